@@ -32,8 +32,7 @@ MAY_SKIP = (
     "root writes into every folder",
     "is not here",  # files of the original program, which are not ours to publish
 )
-#: Seconds that a test may take; the slowest takes a tenth on an idle machine
-MOST_SECONDS = 300
+MOST_SECONDS = 300  #: Seconds that a test may take; the slowest takes a tenth on an idle machine
 skipped: Counter[str] = Counter()
 
 

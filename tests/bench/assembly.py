@@ -9,12 +9,10 @@ from dataclasses import dataclass, field
 Point = tuple[float, float]
 Polygon = list[Point]
 
-#: Lengths below this share of an edge are none
-NEGLIGIBLE = 1e-9
+NEGLIGIBLE = 1e-9  #: Lengths below this share of an edge are none
 #: Names of joint kinds in the order of the Fortran program's numbers
 KINDS = ("contact", "no_slip", "corner", "corner_no_slip", "pin", "mirror")
-#: Friction above this counts as this in a file of blocks
-MOST_FRICTION_DEG = 89.9
+MOST_FRICTION_DEG = 89.9  #: Friction above this counts as this in a file of blocks
 
 
 def area_and_centre(polygon: Polygon) -> tuple[float, Point]:

@@ -17,10 +17,8 @@ import tempfile
 
 from jointed_slope import geometry
 
-#: Times at which the bricks crowd, each the beginning of a part that is timed [s]
-TIMES = (0.9, 1.0, 1.1, 1.2, 1.3)
-#: Length of such a part [s]
-PART = 0.02
+TIMES = (0.9, 1.0, 1.1, 1.2, 1.3)  #: Times at which the bricks crowd, each the beginning of a part that is timed [s]
+PART = 0.02  #: Length of such a part [s]
 
 PILE = """&scene kind='blocks', geometry='pile.blocks' /
 &joint friction_deg={friction:.13f} /

@@ -12,14 +12,10 @@ module dda_band_reference
 
    !> One factorisation and one substitution
    type, extends(job_t) :: band_job_t
-      !> The matrix in LAPACK's band
-      type(band_factor_t) :: matrix
-      !> Its factor after a run
-      type(band_factor_t) :: factor
-      !> Right-hand side: (n_dof, n_block)
-      real(wp), allocatable :: load(:, :)
-      !> Solution after a run: (n_dof, n_block)
-      real(wp), allocatable :: solution(:, :)
+      type(band_factor_t) :: matrix            !! The matrix in LAPACK's band
+      type(band_factor_t) :: factor            !! Its factor after a run
+      real(wp), allocatable :: load(:, :)      !! Right-hand side: (n_dof, n_block)
+      real(wp), allocatable :: solution(:, :)  !! Solution after a run: (n_dof, n_block)
    contains
       !> Lay matrix and right-hand side ready, for LAPACK overwrites them
       procedure :: prepare => prepare_band
@@ -32,8 +28,7 @@ contains
    !> Lay a block matrix into LAPACK's band storage
    pure subroutine new_band_job(matrix, load, job)
       type(block_matrix_t), intent(in) :: matrix
-      !> Right-hand side: (n_dof, n_block)
-      real(wp), intent(in) :: load(:, :)
+      real(wp), intent(in) :: load(:, :)  !! Right-hand side: (n_dof, n_block)
       type(band_job_t), intent(out) :: job
 
       call fill_band(matrix, job%matrix)

@@ -30,8 +30,7 @@ module dda_benchmark
 
    !> Arches of equal voussoirs that differ by their thickness ratio
    type, extends(family_t) :: equal_arches_t
-      !> Number of voussoirs
-      integer :: voussoirs = 36
+      integer :: voussoirs = 36  !! Number of voussoirs
       !> Unknowns of a block; arches of 3 are chains, as where a deck asks for no more
       integer :: unknowns = 6
    contains
@@ -41,26 +40,17 @@ module dda_benchmark
 
    !> Figures of one number of voussoirs; times are medians
    type :: figures_t
-      !> Number of voussoirs
-      integer :: voussoirs = 0
-      !> Unknowns of a block
-      integer :: unknowns = 6
-      !> Mean time of a decision [s]
-      real(wp) :: decision = 0.0_wp
-      !> Time of a search [s]
-      real(wp) :: search = 0.0_wp
-      !> Time of one factorisation and substitution by LAPACK [s]
-      real(wp) :: lapack = 0.0_wp
+      integer :: voussoirs = 0       !! Number of voussoirs
+      integer :: unknowns = 6        !! Unknowns of a block
+      real(wp) :: decision = 0.0_wp  !! Mean time of a decision [s]
+      real(wp) :: search = 0.0_wp    !! Time of a search [s]
+      real(wp) :: lapack = 0.0_wp    !! Time of one factorisation and substitution by LAPACK [s]
       !> Decision over LAPACK: median of the ratios of samples taken one after the other
       real(wp) :: ratio = 0.0_wp
-      !> Decisions that came out right, of four
-      integer :: right = 0
-      !> Mean number of factorisations of a decision
-      real(wp) :: factorisations = 0.0_wp
-      !> What the search found and counted
-      type(critical_t) :: critical
-      !> Relative error of the middle of its bracket
-      real(wp) :: error = 0.0_wp
+      integer :: right = 0                 !! Decisions that came out right, of four
+      real(wp) :: factorisations = 0.0_wp  !! Mean number of factorisations of a decision
+      type(critical_t) :: critical         !! What the search found and counted
+      real(wp) :: error = 0.0_wp           !! Relative error of the middle of its bracket
       !> Shares of setting up, assembly, factor and solve, judging and the rest in a decision's time
       real(wp) :: share(4) = 0.0_wp
       !> Memory that a search adds to the process; -1 if it is not known [kB]
@@ -69,12 +59,9 @@ module dda_benchmark
 
    !> Decisions at four distances from the critical thickness
    type, extends(job_t) :: decisions_job_t
-      !> The arches: (4)
-      type(scene_t), allocatable :: scene(:)
-      !> The same as chains, if they are: (4)
-      type(chain_t), allocatable :: chain(:)
-      !> Their decisions after a run: (4)
-      type(decision_t), allocatable :: decision(:)
+      type(scene_t), allocatable :: scene(:)        !! The arches: (4)
+      type(chain_t), allocatable :: chain(:)        !! The same as chains, if they are: (4)
+      type(decision_t), allocatable :: decision(:)  !! Their decisions after a run: (4)
    contains
       !> Decide all four
       procedure :: run => run_decisions
@@ -82,10 +69,8 @@ module dda_benchmark
 
    !> A critical search
    type, extends(job_t) :: search_job_t
-      !> The arches
-      type(equal_arches_t) :: family
-      !> What it found in the last run
-      type(critical_t) :: critical
+      type(equal_arches_t) :: family  !! The arches
+      type(critical_t) :: critical    !! What it found in the last run
    contains
       !> Search
       procedure :: run => run_search
@@ -93,14 +78,10 @@ module dda_benchmark
 
    !> What a run does before its first step
    type, extends(job_t) :: setup_job_t
-      !> The arch
-      type(scene_t) :: scene
-      !> Copy of its blocks
-      type(block_system_t) :: system
-      !> Copy of its contacts
-      type(contacts_t) :: contacts
-      !> Its equations
-      type(equations_t) :: equations
+      type(scene_t) :: scene          !! The arch
+      type(block_system_t) :: system  !! Copy of its blocks
+      type(contacts_t) :: contacts    !! Copy of its contacts
+      type(equations_t) :: equations  !! Its equations
    contains
       !> Copy blocks and contacts, set up the equations
       procedure :: run => run_setup
@@ -108,10 +89,8 @@ module dda_benchmark
 
    !> One solution with faces held
    type, extends(setup_job_t) :: solve_job_t
-      !> Length of the step [s]
-      real(wp) :: dt = 0.0_wp
-      !> The motion: (n_dof, n_equation)
-      real(wp), allocatable :: motion(:, :)
+      real(wp) :: dt = 0.0_wp                !! Length of the step [s]
+      real(wp), allocatable :: motion(:, :)  !! The motion: (n_dof, n_equation)
    contains
       !> Assemble the blocks, so that the matrix is made anew
       procedure :: prepare => prepare_solve
@@ -146,10 +125,8 @@ contains
 
    !> Arches of radius 10 m whose joints cannot slide
    pure function new_arches(voussoirs, unknowns) result(family)
-      !> Number of voussoirs
-      integer, intent(in) :: voussoirs
-      !> Unknowns of a block, 3 or 6
-      integer, intent(in) :: unknowns
+      integer, intent(in) :: voussoirs  !! Number of voussoirs
+      integer, intent(in) :: unknowns   !! Unknowns of a block, 3 or 6
       type(equal_arches_t) :: family
       type(material_t) :: material
       type(settings_t) :: settings
@@ -169,11 +146,9 @@ contains
    !> Make the arch of one thickness ratio
    pure subroutine build_arch(family, value, scene, error)
       class(equal_arches_t), intent(in) :: family
-      !> Thickness over radius
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! Thickness over radius
       type(scene_t), intent(out) :: scene
-      !> Never allocated
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Never allocated
       type(arch_numbers_t) :: numbers
       type(material_t) :: material
       type(joint_law_t) :: law(family%voussoirs + 1)
@@ -191,12 +166,9 @@ contains
 
    !> All figures but the memory
    subroutine measure(voussoirs, unknowns, figures)
-      !> Number of voussoirs
-      integer, intent(in) :: voussoirs
-      !> Unknowns of a block
-      integer, intent(in) :: unknowns
-      !> Receives the figures
-      type(figures_t), intent(inout) :: figures
+      integer, intent(in) :: voussoirs           !! Number of voussoirs
+      integer, intent(in) :: unknowns            !! Unknowns of a block
+      type(figures_t), intent(inout) :: figures  !! Receives the figures
       type(decisions_job_t) :: decisions
       type(search_job_t) :: search
       type(timed_job_t) :: searching(1)
@@ -233,10 +205,8 @@ contains
    !> called apart is timed apart and multiplied by the number of its calls, the rest is what is
    !> left. The equations are those of the first decision
    subroutine measure_decisions(decisions, figures)
-      !> The four decisions, run once
-      type(decisions_job_t), intent(in) :: decisions
-      !> Receives the figures
-      type(figures_t), intent(inout) :: figures
+      type(decisions_job_t), intent(in) :: decisions  !! The four decisions, run once
+      type(figures_t), intent(inout) :: figures       !! Receives the figures
       type(setup_job_t) :: setup
       type(solve_job_t) :: solve
       type(factorise_job_t) :: factorising
@@ -288,10 +258,8 @@ contains
 
    !> One search and nothing else
    subroutine search_once(voussoirs, unknowns)
-      !> Number of voussoirs
-      integer, intent(in) :: voussoirs
-      !> Unknowns of a block
-      integer, intent(in) :: unknowns
+      integer, intent(in) :: voussoirs  !! Number of voussoirs
+      integer, intent(in) :: unknowns   !! Unknowns of a block
       type(search_job_t) :: search
 
       search%family = new_arches(voussoirs, unknowns)

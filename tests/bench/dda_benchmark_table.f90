@@ -17,10 +17,8 @@ contains
 
    !> Print day and machine, the figures, and the parts of a decision
    subroutine print_tables(figures, markdown)
-      !> Figures, one number of voussoirs each: (n)
-      type(figures_t), intent(in) :: figures(:)
-      !> Markdown instead of plain text
-      logical, intent(in) :: markdown
+      type(figures_t), intent(in) :: figures(:)  !! Figures, one number of voussoirs each: (n)
+      logical, intent(in) :: markdown            !! Markdown instead of plain text
       integer :: i
 
       write (output_unit, "(a)") machine_line(), ""
@@ -44,8 +42,7 @@ contains
    !> One line of the first table
    function figure_cells(figures) result(cells)
       type(figures_t), intent(in) :: figures
-      !> Text of each column: (12)
-      character(len=cell) :: cells(12)
+      character(len=cell) :: cells(12)  !! Text of each column: (12)
 
       associate (critical => figures%critical)
          cells = [character(len=cell) :: to_text(figures%voussoirs), &
@@ -62,8 +59,7 @@ contains
    !> One line of the second table
    function part_cells(figures) result(cells)
       type(figures_t), intent(in) :: figures
-      !> Text of each column: (7)
-      character(len=cell) :: cells(7)
+      character(len=cell) :: cells(7)  !! Text of each column: (7)
       integer :: i
 
       cells(1) = to_text(figures%voussoirs)
@@ -76,12 +72,9 @@ contains
 
    !> Print one line of a table
    subroutine print_row(cells, markdown, head)
-      !> Text of each column: (:)
-      character(len=*), intent(in) :: cells(:)
-      !> Markdown instead of plain text
-      logical, intent(in) :: markdown
-      !> Whether a rule follows
-      logical, intent(in) :: head
+      character(len=*), intent(in) :: cells(:)  !! Text of each column: (:)
+      logical, intent(in) :: markdown           !! Markdown instead of plain text
+      logical, intent(in) :: head               !! Whether a rule follows
       integer :: i
 
       if (markdown) then
@@ -95,10 +88,8 @@ contains
 
    !> A time with at least three digits
    function microseconds(seconds) result(text)
-      !> The time [s]
-      real(wp), intent(in) :: seconds
-      !> The time in microseconds
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: seconds        !! The time [s]
+      character(len=:), allocatable :: text  !! The time in microseconds
       integer :: digits
 
       digits = 0
@@ -109,12 +100,9 @@ contains
 
    !> A number with a fixed number of decimals
    function rounded(number, decimals) result(text)
-      !> The number
-      real(wp), intent(in) :: number
-      !> Digits after the point; without any there is no point
-      integer, intent(in) :: decimals
-      !> The text
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: number  !! The number
+      integer, intent(in) :: decimals  !! Digits after the point; without any there is no point
+      character(len=:), allocatable :: text  !! The text
       character(len=40) :: buffer
       character(len=12) :: form
 
@@ -126,10 +114,8 @@ contains
 
    !> A number of which only the magnitude matters
    function small(number) result(text)
-      !> The number
-      real(wp), intent(in) :: number
-      !> The text
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: number         !! The number
+      character(len=:), allocatable :: text  !! The text
       character(len=12) :: buffer
 
       write (buffer, "(es9.1)") number
@@ -138,8 +124,7 @@ contains
 
    !> Day, processor and compiler
    function machine_line() result(line)
-      !> The line
-      character(len=:), allocatable :: line
+      character(len=:), allocatable :: line  !! The line
       character(len=8) :: day
 
       call date_and_time(date=day)
@@ -148,8 +133,7 @@ contains
 
    !> Number and kind of the processors, where the system tells it
    function processor() result(text)
-      !> The text
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !! The text
       character(len=120) :: line
       integer :: cores, stat, unit
 

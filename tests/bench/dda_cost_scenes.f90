@@ -23,14 +23,11 @@ contains
 
    !> A dry wall in running bond at rest on a fixed floor
    subroutine wall(courses, columns, dynamic, current, scene)
-      !> Courses
-      integer, intent(in) :: courses
+      integer, intent(in) :: courses  !! Courses
       !> Bricks in every other course; in between one more, the outer two of half the length
       integer, intent(in) :: columns
-      !> Whether velocities are kept
-      logical, intent(in) :: dynamic
-      !> Whether blocks move
-      logical, intent(in) :: current
+      logical, intent(in) :: dynamic  !! Whether velocities are kept
+      logical, intent(in) :: current  !! Whether blocks move
       type(scene_t), intent(out) :: scene
       type(block_plan_t) :: plan
       real(wp) :: left, right
@@ -55,10 +52,8 @@ contains
 
    !> Blocks a little turned and apart, one above the other, that fall upon one another
    subroutine loose_blocks(columns, dynamic, scene)
-      !> Columns of blocks, and their number in each
-      integer, intent(in) :: columns
-      !> Whether velocities are kept
-      logical, intent(in) :: dynamic
+      integer, intent(in) :: columns  !! Columns of blocks, and their number in each
+      logical, intent(in) :: dynamic  !! Whether velocities are kept
       type(scene_t), intent(out) :: scene
       type(block_plan_t) :: plan
       real(wp) :: pitch(2), shift
@@ -82,8 +77,7 @@ contains
 
    !> A plan of quadrilaterals, the first of which is fixed
    subroutine empty_plan(n, plan)
-      !> Number of blocks
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of blocks
       type(block_plan_t), intent(out) :: plan
       integer :: b
 
@@ -98,14 +92,10 @@ contains
    !> Put a rectangle into a plan
    subroutine put_brick(plan, b, corner, size, angle)
       type(block_plan_t), intent(inout) :: plan
-      !> Number of the block
-      integer, intent(in) :: b
-      !> Lower left corner: (2) [m]
-      real(wp), intent(in) :: corner(2)
-      !> Length and height: (2) [m]
-      real(wp), intent(in) :: size(2)
-      !> Angle by which it is turned about its centre [rad]
-      real(wp), intent(in) :: angle
+      integer, intent(in) :: b           !! Number of the block
+      real(wp), intent(in) :: corner(2)  !! Lower left corner: (2) [m]
+      real(wp), intent(in) :: size(2)    !! Length and height: (2) [m]
+      real(wp), intent(in) :: angle      !! Angle by which it is turned about its centre [rad]
       real(wp) :: arm(2, 4)
       integer :: v
 
@@ -120,10 +110,8 @@ contains
    !> The scene of a plan
    subroutine make_scene(plan, dynamic, current, scene)
       type(block_plan_t), intent(in) :: plan
-      !> Whether velocities are kept
-      logical, intent(in) :: dynamic
-      !> Whether blocks move
-      logical, intent(in) :: current
+      logical, intent(in) :: dynamic  !! Whether velocities are kept
+      logical, intent(in) :: current  !! Whether blocks move
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
 

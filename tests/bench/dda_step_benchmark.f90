@@ -23,14 +23,11 @@ module dda_step_benchmark
 
    !> A scene and how it is run
    type :: step_case_t
-      !> Name of the scene
-      character(len=24) :: name = ""
+      character(len=24) :: name = ""  !! Name of the scene
       !> Courses and bricks in a course; without courses as many loose blocks in square
       integer :: size(2) = 0
-      !> Whether velocities are kept
-      logical :: dynamic = .false.
-      !> Whether blocks move
-      logical :: current = .false.
+      logical :: dynamic = .false.  !! Whether velocities are kept
+      logical :: current = .false.  !! Whether blocks move
       !> Steps before those that are timed, and steps that are timed, which may be none: (2)
       integer :: steps(2) = [0, 1]
    end type step_case_t
@@ -41,8 +38,7 @@ module dda_step_benchmark
 
    !> What a step costs
    type :: step_figures_t
-      !> Movable blocks
-      integer :: blocks = 0
+      integer :: blocks = 0  !! Movable blocks
       !> Time of one call of each part but the last, of one step with the setting up of its share of
       !> the run for that, 0 if it was not timed: (6) [s]
       real(wp) :: part(6) = 0.0_wp
@@ -52,22 +48,14 @@ module dda_step_benchmark
 
    !> The state that steps start from
    type, extends(job_t) :: step_job_t
-      !> The scene at that state
-      type(scene_t) :: scene
-      !> The march
-      type(march_t) :: march
-      !> Its equations
-      type(equations_t) :: equations
-      !> Motion of the blocks: (n_dof, n_equation)
-      real(wp), allocatable :: motion(:, :)
-      !> The scene that a run works on
-      type(scene_t) :: copy
-      !> Which part is timed: a place in part_name
-      integer :: part = 0
-      !> Steps of a run
-      integer :: steps = 0
-      !> How the run ended
-      type(outcome_t) :: outcome
+      type(scene_t) :: scene                 !! The scene at that state
+      type(march_t) :: march                 !! The march
+      type(equations_t) :: equations         !! Its equations
+      real(wp), allocatable :: motion(:, :)  !! Motion of the blocks: (n_dof, n_equation)
+      type(scene_t) :: copy                  !! The scene that a run works on
+      integer :: part = 0                    !! Which part is timed: a place in part_name
+      integer :: steps = 0                   !! Steps of a run
+      type(outcome_t) :: outcome             !! How the run ended
    contains
       !> Make the copies
       procedure :: prepare => prepare_step
@@ -79,10 +67,8 @@ contains
 
    !> Time the parts of a step
    subroutine measure_steps(step_case, figures)
-      !> The scene and how it is run
-      type(step_case_t), intent(in) :: step_case
-      !> Receives the figures
-      type(step_figures_t), intent(out) :: figures
+      type(step_case_t), intent(in) :: step_case    !! The scene and how it is run
+      type(step_figures_t), intent(out) :: figures  !! Receives the figures
       type(step_job_t) :: job
       type(timed_job_t) :: timed(1)
       real(wp), allocatable :: sample(:, :)
@@ -118,8 +104,7 @@ contains
 
    !> Run a scene to where its steps are timed
    subroutine make_job(step_case, job)
-      !> The scene and how it is run
-      type(step_case_t), intent(in) :: step_case
+      type(step_case_t), intent(in) :: step_case  !! The scene and how it is run
       type(step_job_t), intent(out) :: job
       type(outcome_t) :: outcome
 

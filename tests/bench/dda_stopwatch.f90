@@ -19,15 +19,13 @@ module dda_stopwatch
       !> Do the work once
       subroutine run_job(job)
          import :: job_t
-         !> The job
-         class(job_t), intent(inout) :: job
+         class(job_t), intent(inout) :: job  !! The job
       end subroutine run_job
    end interface
 
    !> One of several jobs that are timed in turn
    type :: timed_job_t
-      !> The job
-      class(job_t), allocatable :: job
+      class(job_t), allocatable :: job  !! The job
    end type timed_job_t
 
    !> Time that each job may take [s]
@@ -48,8 +46,7 @@ contains
    !> Time jobs in turn, so that a disturbance of the machine meets all of them; short jobs are run
    !> several times a sample, of which the least time counts
    subroutine take_samples(timed, sample)
-      !> The jobs: (n)
-      type(timed_job_t), intent(inout) :: timed(:)
+      type(timed_job_t), intent(inout) :: timed(:)  !! The jobs: (n)
       !> Least time of one run in each sample: (n_sample, n) [s]
       real(wp), allocatable, intent(out) :: sample(:, :)
       real(wp) :: once(size(timed))
@@ -72,10 +69,8 @@ contains
    !> is the time that the processor gives to this process, not that in which it waits
    function seconds_of(job, runs) result(least)
       class(job_t), intent(inout) :: job
-      !> How many
-      integer, intent(in) :: runs
-      !> The least [s]
-      real(wp) :: least
+      integer, intent(in) :: runs  !! How many
+      real(wp) :: least            !! The least [s]
       real(wp) :: start, finish
       integer :: i
 
@@ -91,8 +86,7 @@ contains
 
    !> The value in the middle: half of the values are no larger, half no smaller
    pure real(wp) function median_of(values)
-      !> One value or more: (:)
-      real(wp), intent(in) :: values(:)
+      real(wp), intent(in) :: values(:)  !! One value or more: (:)
       real(wp) :: sorted(size(values))
       integer :: at, i
 
@@ -110,8 +104,7 @@ contains
 
    !> Most memory that this process has had at one time, where the system tells it
    integer function peak_memory()
-      !> [kB]; -1 if it is not known
-      character(len=80) :: line
+      character(len=80) :: line  !! [kB]; -1 if it is not known
       integer :: stat, unit
 
       peak_memory = -1

@@ -22,8 +22,7 @@ from random_assemblies import make_pushed
 
 SHARES = (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 5.0)
 FLOWS = ("associated", "coulomb")
-#: Seconds that a deck may take
-PATIENCE = 100
+PATIENCE = 100  #: Seconds that a deck may take
 
 
 def run(dda: Path, folder: Path, flow: str, task: str) -> tuple[list[dict[str, str]], float]:

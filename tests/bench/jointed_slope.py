@@ -12,8 +12,7 @@ import random
 
 Point = tuple[float, float]
 
-#: Depth of the ground below and behind the slope [m]
-DEPTH = 2.0
+DEPTH = 2.0  #: Depth of the ground below and behind the slope [m]
 
 
 def inside(polygon: list[Point], start: Point, way: Point) -> tuple[float, float] | None:

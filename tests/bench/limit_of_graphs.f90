@@ -32,10 +32,8 @@ contains
       type(joint_graph_t), intent(out) :: graph
       !> Loads at factor zero, what a factor of one adds: (3, n_block)
       real(wp), allocatable, intent(out) :: dead(:, :), live(:, :)
-      !> Its name
-      character(*), intent(out) :: name
-      !> Whether there is none
-      logical, intent(out) :: ended
+      character(*), intent(out) :: name  !! Its name
+      logical, intent(out) :: ended      !! Whether there is none
       integer :: b, j, n_block, n_joint, status
 
       read (*, *, iostat=status) n_block, n_joint, name
@@ -57,8 +55,7 @@ contains
       type(joint_graph_t), intent(in) :: graph
       !> Loads at factor zero, what a factor of one adds: (3, n_block)
       real(wp), intent(in) :: dead(:, :), live(:, :)
-      !> Name of the graph
-      character(*), intent(in) :: name
+      character(*), intent(in) :: name  !! Name of the graph
       type(limit_load_t) :: limit
       type(load_decision_t) :: decision
       integer(int64) :: start, finish, rate

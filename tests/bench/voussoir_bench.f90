@@ -58,14 +58,10 @@ contains
 
    !> Read the options
    subroutine read_options(sizes, unknowns, markdown, error)
-      !> Numbers of voussoirs, rising: (n)
-      integer, allocatable, intent(out) :: sizes(:)
-      !> Unknowns of a block: 3, 6, or both
-      integer, allocatable, intent(out) :: unknowns(:)
-      !> Whether the tables are wanted in Markdown
-      logical, intent(out) :: markdown
-      !> Allocated if an option is not understood
-      type(error_t), allocatable, intent(out) :: error
+      integer, allocatable, intent(out) :: sizes(:)     !! Numbers of voussoirs, rising: (n)
+      integer, allocatable, intent(out) :: unknowns(:)  !! Unknowns of a block: 3, 6, or both
+      logical, intent(out) :: markdown                  !! Whether the tables are wanted in Markdown
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if an option is not understood
       character(len=200) :: argument
       integer :: k
 
@@ -102,12 +98,9 @@ contains
 
    !> Read a list of rising integers
    subroutine read_sizes(text, sizes, error)
-      !> Such as 12,36
-      character(len=*), intent(in) :: text
-      !> The integers: (n)
-      integer, allocatable, intent(out) :: sizes(:)
-      !> Allocated if the text is no such list
-      type(error_t), allocatable, intent(out) :: error
+      character(len=*), intent(in) :: text              !! Such as 12,36
+      integer, allocatable, intent(out) :: sizes(:)     !! The integers: (n)
+      type(error_t), allocatable, intent(out) :: error  !! Allocated if the text is no such list
       integer :: comma, from, number
       logical :: ok
 

@@ -27,10 +27,8 @@ contains
 
    !> Walls of rising length or size, in reference geometry and moving, static and in time
    subroutine measure_walls(name, square)
-      !> Name of the scene
-      character(len=*), intent(in) :: name
-      !> As many courses as bricks in one; otherwise ten
-      logical, intent(in) :: square
+      character(len=*), intent(in) :: name  !! Name of the scene
+      logical, intent(in) :: square         !! As many courses as bricks in one; otherwise ten
       integer, parameter :: side(3) = [10, 32, 100]
       type(step_case_t) :: step_case(3)
       integer :: i
@@ -75,10 +73,8 @@ contains
 
    !> Measure one scene in all sizes, and print them with their exponents
    subroutine measure_sizes(step_case, how)
-      !> The scene in rising sizes: (3)
-      type(step_case_t), intent(in) :: step_case(:)
-      !> How it is run
-      character(len=*), intent(in) :: how
+      type(step_case_t), intent(in) :: step_case(:)  !! The scene in rising sizes: (3)
+      character(len=*), intent(in) :: how            !! How it is run
       type(step_figures_t) :: figures(size(step_case))
       character(len=cell) :: cells(11)
       real(wp) :: exponent
@@ -113,11 +109,9 @@ contains
 
    !> The figures of one scene as one line of the table
    subroutine fill_cells(name, figures, cells)
-      !> Name of the scene
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the scene
       type(step_figures_t), intent(in) :: figures
-      !> Text of each column: (11)
-      character(len=*), intent(out) :: cells(:)
+      character(len=*), intent(out) :: cells(:)  !! Text of each column: (11)
       real(wp) :: us(6)
       integer :: j
 
@@ -136,22 +130,17 @@ contains
 
    !> A number with at least three digits
    function three_digits(number) result(text)
-      !> The number
-      real(wp), intent(in) :: number
-      !> The text
-      character(len=:), allocatable :: text
+      real(wp), intent(in) :: number         !! The number
+      character(len=:), allocatable :: text  !! The text
 
       text = rounded(number, merge(3, merge(2, 1, number < 10.0_wp), number < 1.0_wp))
    end function three_digits
 
    !> Read the options
    subroutine read_options(markdown, largest, only)
-      !> Whether the table is wanted in Markdown
-      logical, intent(out) :: markdown
-      !> Most blocks
-      integer, intent(out) :: largest
-      !> Part of the names of the scenes that are measured
-      character(len=*), intent(out) :: only
+      logical, intent(out) :: markdown       !! Whether the table is wanted in Markdown
+      integer, intent(out) :: largest        !! Most blocks
+      character(len=*), intent(out) :: only  !! Part of the names of the scenes that are measured
       character(len=200) :: argument
       integer :: k
       logical :: ok

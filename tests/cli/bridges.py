@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable
 
 Point = tuple[float, float]
-#: Depth of the fixed blocks behind springings
-ABUTMENT = 0.3
+ABUTMENT = 0.3  #: Depth of the fixed blocks behind springings
 
 
 def polygon(corners: Iterable[Point], head: str = "block") -> str:

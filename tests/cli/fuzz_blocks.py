@@ -86,8 +86,7 @@ RECORDS = [b"Station 1\ntime,east,up\n0.0,0.1,0\n\n0.005, -0.2,0.1\n0.01,0,0\n",
 WORDS = b"""block fixed material joint measure load fix displacement base_acceleration velocity stress
 density young x y friction_deg remove add polygon at
 file columns scale 'record.csv' time 0 -1 1e300 1e-300 nan 2147483648 99999999999 1e15 0.5 ! & /""".split()
-#: Words of a run that keep it short
-SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]
+SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]  #: Words of a run that keep it short
 
 
 def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:

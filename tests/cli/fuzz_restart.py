@@ -27,10 +27,8 @@ from pathlib import Path
 from fuzz_blocks import BLOCKS, RECORDS, complaint
 from fuzz_deck import run
 
-#: First bytes of a restart file
-TITLE = b"voussoir restart 6"
-#: Whole numbers and numbers of each joint, at the end of the whole numbers and of the numbers
-JOINT = (12, 24)
+TITLE = b"voussoir restart 6"  #: First bytes of a restart file
+JOINT = (12, 24)  #: Whole numbers and numbers of each joint, at the end of the whole numbers and of the numbers
 #: Scenes whose runs go on: blocks that were found to touch, as they move and as they were at the
 #: beginning, and arches, whose joints are given
 SCENES = [
@@ -45,8 +43,7 @@ SCENES = [
     ("&scene kind = 'blocks', geometry = 'b.blocks' /",
      "geometry = 'current', time_step = 0.02, unknowns = 3"),
 ]
-#: Steps of a run before its file is written, and of the one that goes on
-STEPS = (5, 8)
+STEPS = (5, 8)  #: Steps of a run before its file is written, and of the one that goes on
 WHOLES = [-(2**31), -1, 0, 1, 2, 3, 7, 100, 10**6, 2**31 - 1]
 NUMBERS = [float(word) for word in "0 -0 1 -1 nan inf -inf 1e308 -1e308 1e100 1e30 -1e15 1e8 1e-8 "
            "1e-30 5e-324 3.14159265358979 -0.99 100 -1e3".split()]
@@ -73,8 +70,7 @@ def file_of(whole: list[int], number: list[float]) -> bytes:
     return TITLE + struct.pack("<q", zlib.crc32(body)) + body
 
 
-#: A NaN that a processor told to trap does not even compare
-SIGNALLING = struct.pack("<Q", 0x7FF0000000000001)
+SIGNALLING = struct.pack("<Q", 0x7FF0000000000001)  #: A NaN that a processor told to trap does not even compare
 
 
 def numbers_of(content: bytes) -> tuple[list[int], list[float]]:

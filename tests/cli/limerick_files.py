@@ -8,8 +8,7 @@ from pathlib import Path
 from dda_command import run_dda
 
 ROOT = Path(__file__).parents[2]
-#: models of our own
-INPUT = ROOT / "input" / "limerick"
+INPUT = ROOT / "input" / "limerick"  #: models of our own
 #: the original's examples and arches at its limits, which are not part of the project
 HELD = Path(os.environ.get("VOUSSOIR_SHARED", ROOT.parent / "shared")) / "data" / "limerick"
 #: a square of 1 by 1, in the plain form

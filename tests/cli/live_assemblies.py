@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from bridges import abutment, polygon, voussoirs
 
-#: A factor beside which rounding of the dead loads is not felt
-MANY = 2.0**40
+MANY = 2.0**40  #: A factor beside which rounding of the dead loads is not felt
 
 
 def random_wall(source: random.Random) -> str:
@@ -58,18 +57,13 @@ def random_assembly(seed: int) -> tuple[str, float]:
 class Effects:
     """What forces of one do to the free blocks of a scene, in the largest dead load of a block."""
 
-    #: A column for each corner of a joint: a force along the normal
-    normal: np.ndarray
-    #: A column for each corner: a force along the joint
-    along: np.ndarray
-    #: First corner of each joint, and how many corners come before the end
-    first: list[int]
-    #: Friction of each corner's joint
-    friction: np.ndarray
+    normal: np.ndarray  #: A column for each corner of a joint: a force along the normal
+    along: np.ndarray  #: A column for each corner: a force along the joint
+    first: list[int]  #: First corner of each joint, and how many corners come before the end
+    friction: np.ndarray  #: Friction of each corner's joint
     dead: np.ndarray
     live: np.ndarray
-    #: Strength of each joint over its length
-    strength: list[float]
+    strength: list[float]  #: Strength of each joint over its length
 
 
 def effects(scene) -> Effects:
@@ -166,8 +160,7 @@ class HeldState:
     opening: float
     slip: float
     uphill: float
-    #: Power of the live load
-    power: float
+    power: float  #: Power of the live load
 
 
 def held_state(scene, share: float, rounds: int = 400) -> HeldState:

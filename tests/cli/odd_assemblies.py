@@ -13,8 +13,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 from assembly import Polygon, area_and_centre, clip  # noqa: E402
 
-#: Fixed polygons, polygons that can move
-Shapes = tuple[list[Polygon], list[Polygon]]
+Shapes = tuple[list[Polygon], list[Polygon]]  #: Fixed polygons, polygons that can move
 FLOOR = [(-9.0, -1.0), (9.0, -1.0), (9.0, 0.0), (-9.0, 0.0)]
 UNIT_WEIGHT = 2e4
 

@@ -41,15 +41,13 @@ class Scene:
 
     fixed: list[list[Point]]
     blocks: list[list[Point]]
-    #: Live force on the block of the same number over its weight
-    push: Point = (1.0, 0.0)
+    push: Point = (1.0, 0.0)  #: Live force on the block of the same number over its weight
     gravity_deg: float = -90.0
     unit_weight: float = 20e3
     young: float = 5e9
     friction_deg: float = 35.0
     cohesion: float = 0.0
-    #: Numbers of the blocks that these were before
-    order: list[int] = field(default_factory=list)
+    order: list[int] = field(default_factory=list)  #: Numbers of the blocks that these were before
 
     def text(self) -> str:
         """The file of blocks."""
@@ -79,10 +77,8 @@ class Change:
 
     scene: Scene
     force: Callable[[Point], Point]
-    #: Whether the loading path is the same: turned gravity comes from upright gravity
-    same_path: bool = True
-    #: What rounding of the corners changes a limit by
-    rounding: float = 0.0
+    same_path: bool = True  #: Whether the loading path is the same: turned gravity comes from upright gravity
+    rounding: float = 0.0  #: What rounding of the corners changes a limit by
 
 
 def scene_of(seed: int) -> Scene:

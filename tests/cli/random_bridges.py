@@ -20,12 +20,9 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-#: Fixed positions of each direction
-POSITIONS = 61
-#: Processor time that the program may take for a deck [s]
-MOST_SECONDS = 120
-#: Share of the reported factor by which that of a fixed position may be smaller
-SMALLER = 1e-6
+POSITIONS = 61  #: Fixed positions of each direction
+MOST_SECONDS = 120  #: Processor time that the program may take for a deck [s]
+SMALLER = 1e-6  #: Share of the reported factor by which that of a fixed position may be smaller
 SHAPES = ("segmental", "segmental", "circular", "circular", "pointed", "elliptic", "basket", "parabolic", "catenary",
           "flat")
 

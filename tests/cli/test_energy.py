@@ -11,8 +11,7 @@ from dda_command import run_deck
 
 #: 2240 kg/m3 on 1 m2, and gravity
 MASS, G = 2240.0, 9.81
-#: What rounding leaves of thousands of steps
-EXACT = 1e-10
+EXACT = 1e-10  #: What rounding leaves of thousands of steps
 DYNAMIC = ("&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, steps = 9999, time_step = {},"
            " duration = {}{} /\n")
 OUTPUT = "&output energy = .true. /\n"

@@ -13,8 +13,7 @@ import pytest
 from block_scene import bar_forces, rows_of
 from dda_command import run_dda
 
-#: What takes a second or two takes minutes where its time grows with the square of the number [s]
-PATIENCE = 60.0
+PATIENCE = 60.0  #: What takes a second or two takes minutes where its time grows with the square of the number [s]
 DYNAMIC = "&analysis mode = 'dynamic', geometry = 'current' /\n"
 
 

@@ -10,8 +10,7 @@ import pytest
 from dda_command import run_dda
 from limerick_files import HAS_XML, INPUT
 
-#: What takes a second takes minutes where its time grows with the square of the size [s]
-PATIENCE = 30.0
+PATIENCE = 30.0  #: What takes a second takes minutes where its time grows with the square of the size [s]
 GEOMETRY = (INPUT / "terrace_ddaml.geo").read_text()
 ANALYSIS = (INPUT / "terrace_ddaml.ana").read_text()
 #: Elements, and letters: more than a reader keeps of one text unless it is told to

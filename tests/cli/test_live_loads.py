@@ -12,8 +12,7 @@ from dda_command import rows_of, run_deck
 DATA = Path(__file__).parents[1] / "data"
 GROUND = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\n"
 BLOCK = "block\n0 0\n1 0\n1 2\n0 2\n"
-#: Weight of the block with the default density
-WEIGHT = 2.0 * 2240.0 * 9.81
+WEIGHT = 2.0 * 2240.0 * 9.81  #: Weight of the block with the default density
 #: It turns about a corner, half a metre from its centre of gravity, under a push of 1000 N at 2 m
 TURNS = 0.5 * WEIGHT / 2.0 / 1000.0
 PUSHED = GROUND + BLOCK + "live 0 2 1000 0\n"

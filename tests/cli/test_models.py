@@ -16,10 +16,8 @@ MODES = ("static", "dynamic", "limerick")
 #: Keys of arches of any shape
 SHAPE_KEYS = ("span", "rise", "right_rise", "thickness", "crown_thickness", "springing_thickness", "pier_width",
               "pier_height", "buttress_width", "buttress_height", "lune_deg")
-#: Arches with it are a shape, too; tests/cli/test_crushing.py
-STRENGTH = "material%compressive_strength"
-#: Blocks far above the water
-WATER = "&scene kind = 'blocks', geometry = 's.water' /\n"
+STRENGTH = "material%compressive_strength"  #: Arches with it are a shape, too; tests/cli/test_crushing.py
+WATER = "&scene kind = 'blocks', geometry = 's.water' /\n"  #: Blocks far above the water
 GEOMETRIES = ("reference", "current")
 DATA = Path(__file__).parents[1] / "data"
 INPUT_DOC = Path(__file__).parents[2] / "docs" / "input.md"
@@ -139,10 +137,8 @@ class Answer(NamedTuple):
     deck: str
     low: float
     high: float
-    #: the critical value, or the verdict of both ends
-    wanted: float | str
-    #: largest relative error with mode = 'limerick' or 'dynamic'; static decisions are exact
-    near: float = 0.0
+    wanted: float | str  #: the critical value, or the verdict of both ends
+    near: float = 0.0  #: largest relative error with mode = 'limerick' or 'dynamic'; static decisions are exact
 
 
 def of_the_block(kind: str, mode: str) -> dict[str, Answer]:
@@ -290,8 +286,7 @@ RECORD = "&load gravity = 0 /\n&ground record = 's.sine' /\n"
 FAR = 2 * math.pi * 0.05 * 16
 
 
-#: An arch that takes no time
-FEW = "&arch voussoirs = 4 /\n"
+FEW = "&arch voussoirs = 4 /\n"  #: An arch that takes no time
 
 
 def in_time(kind: str) -> dict[str, Answer]:

@@ -12,8 +12,7 @@ import pytest
 from block_scene import Point, block, rows_of
 from dda_command import run_dda
 
-#: Contact tolerance of a post of 0.5 m x 1 m below a lintel [m]
-TOLERANCE = 1e-4 * math.sqrt(0.5)
+TOLERANCE = 1e-4 * math.sqrt(0.5)  #: Contact tolerance of a post of 0.5 m x 1 m below a lintel [m]
 #: Blocks, gap or overlap, and place of a warning; the tolerance that takes it
 WARNING = re.compile(r"warning: blocks (\d+) and (\d+) (have a gap of|overlap by) (\S+) m at \((\S+), (\S+)\), "
                      r"contact_tolerance allows (\S+) m. (They[a-z ]+); .* scene%contact_tolerance = (\S+)")

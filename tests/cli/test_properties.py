@@ -9,18 +9,12 @@ from pathlib import Path
 import pytest
 from properties import PROPERTIES, Bench
 
-#: Assemblies of three kinds: a wall, a ring, a slope
-SEEDS = (0, 8, 11)
-#: What falls with forces that hold one another in any size, and with corners that hardly open
-WEDGED = (23, 122)
-#: What is pushed, in time, and comes to rest in its 17th step
-PUSHED = (3042, 3058)
-#: What is pressed hard, in time, by forces over gaps that a look leaves
-PRESSED = (304, 771)
-#: What is pushed, in time, by residual gaps of contacts that bear much and hardly move
-LIFTED = (771018, 771024)
-#: What rests, in time, and creeps where sweeps end too soon
-RESTING = (335, 367, 447, 7020, 7029)
+SEEDS = (0, 8, 11)  #: Assemblies of three kinds: a wall, a ring, a slope
+WEDGED = (23, 122)  #: What falls with forces that hold one another in any size, and with corners that hardly open
+PUSHED = (3042, 3058)  #: What is pushed, in time, and comes to rest in its 17th step
+PRESSED = (304, 771)  #: What is pressed hard, in time, by forces over gaps that a look leaves
+LIFTED = (771018, 771024)  #: What is pushed, in time, by residual gaps of contacts that bear much and hardly move
+RESTING = (335, 367, 447, 7020, 7029)  #: What rests, in time, and creeps where sweeps end too soon
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,7 @@ DECK = """&scene title = 'Random arches' /
 &sweep parameter = 'gravity_direction_deg', values = {gravity}, linked = .true. /
 &output joints = .false., blocks = .false. {more} /
 """
-#: What makes the program build the joint graph of an arch
-AS_GRAPH = ", condition = .true."
+AS_GRAPH = ", condition = .true."  #: What makes the program build the joint graph of an arch
 
 
 def random_arches(voussoirs: int, seed: int, more: str) -> str:

@@ -19,8 +19,7 @@ HEAD = (
     (0.0, 0.562420228449706, 1.0033293198816453, 1.5847961194834055, 2.2154233982001355, RIGHT),
     (0.0, 0.719151459463523, 1.2096433760125158, 1.8923473256720063, 2.3078308962081757, RIGHT),
 )
-#: First collapse on the loading path, over the weight: shear of joints that stick is remembered there
-PATH = 0.6601
+PATH = 0.6601  #: First collapse on the loading path, over the weight: shear of joints that stick is remembered there
 #: A law of joints that break as the wall is pushed, some across and some along themselves
 WEAK_MORTAR = "friction_deg = 35, cohesion = 4e3, tension = 1e3"
 

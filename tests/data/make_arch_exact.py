@@ -42,14 +42,10 @@ from scipy.optimize import brentq, linprog
 from scipy.sparse import csr_matrix
 
 DIGITS = 60
-#: What counts as zero in the arithmetic of `DIGITS` digits
-TINY = mp.mpf(10) ** -40
-#: Weight of the arch in the linear program, far above the tolerances of its solver
-FORCE_SCALE = 1e4
-#: Friction angle from which joints do not slip [deg]
-NO_SLIP_DEG = Fraction(90)
-#: Thickness ratios from here on have no intrados
-LARGEST_RATIO = 2.0
+TINY = mp.mpf(10) ** -40  #: What counts as zero in the arithmetic of `DIGITS` digits
+FORCE_SCALE = 1e4  #: Weight of the arch in the linear program, far above the tolerances of its solver
+NO_SLIP_DEG = Fraction(90)  #: Friction angle from which joints do not slip [deg]
+LARGEST_RATIO = 2.0  #: Thickness ratios from here on have no intrados
 
 COLUMNS = [
     "case", "half_angle_deg", "voussoirs", "joints_deg", "facet_deg", "friction_deg",
@@ -115,10 +111,8 @@ class Answer:
     #: Opening of the intrados corner of each joint of one half: (joint) -> rate
     opens_intrados: dict[int, mp.mpf] | None = None
     opens_extrados: dict[int, mp.mpf] | None = None
-    #: Slip of each joint of one half, with the sign of the shear force
-    slips: dict[int, mp.mpf] | None = None
-    #: Thickness ratios at which standing turns to falling or back
-    turns: tuple[float, ...] = ()
+    slips: dict[int, mp.mpf] | None = None  #: Slip of each joint of one half, with the sign of the shear force
+    turns: tuple[float, ...] = ()  #: Thickness ratios at which standing turns to falling or back
 
 
 # ------------------------------------------------ mp: half an arch, two unknowns

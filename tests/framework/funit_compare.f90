@@ -18,12 +18,10 @@ module funit_compare
 
    !> An assertion as it stands in a test
    type :: claim_t
-      !> Name of the assertion
-      character(len=:), allocatable :: assertion
+      character(len=:), allocatable :: assertion  !! Name of the assertion
       !> What the author says when it fails; empty if nothing
       character(len=:), allocatable :: message
-      !> Where it stands
-      type(SourceLocation) :: location
+      type(SourceLocation) :: location  !! Where it stands
    end type claim_t
 
    !> Room for one line of a report, but for a longer text
@@ -33,12 +31,9 @@ contains
 
    !> Make a claim
    function claim(assertion, message, location)
-      !> Name of the assertion
-      character(len=*), intent(in) :: assertion
-      !> What the author says when it fails
-      character(len=*), intent(in), optional :: message
-      !> Where it stands
-      type(SourceLocation), intent(in) :: location
+      character(len=*), intent(in) :: assertion          !! Name of the assertion
+      character(len=*), intent(in), optional :: message  !! What the author says when it fails
+      type(SourceLocation), intent(in) :: location       !! Where it stands
       type(claim_t) :: claim
 
       claim%assertion = assertion
@@ -52,14 +47,10 @@ contains
       type(claim_t), intent(in) :: claim
       !> Expected values in array element order: one for all, or as many as actual
       real(real64), intent(in) :: expected(:)
-      !> Their shape; empty for a scalar
-      integer, intent(in) :: expected_shape(:)
-      !> Values found
-      real(real64), intent(in) :: actual(:)
-      !> Their shape
-      integer, intent(in) :: actual_shape(:)
-      !> Room between them; 0 if absent
-      real(real64), intent(in), optional :: tolerance
+      integer, intent(in) :: expected_shape(:)         !! Their shape; empty for a scalar
+      real(real64), intent(in) :: actual(:)            !! Values found
+      integer, intent(in) :: actual_shape(:)           !! Their shape
+      real(real64), intent(in), optional :: tolerance  !! Room between them; 0 if absent
       character(len=line_length) :: left, right, rest
       type(ieee_status_type) :: status
       real(real64) :: e, room
@@ -90,12 +81,9 @@ contains
       type(claim_t), intent(in) :: claim
       !> Expected values in array element order: one for all, or as many as actual
       integer(int64), intent(in) :: expected(:)
-      !> Their shape; empty for a scalar
-      integer, intent(in) :: expected_shape(:)
-      !> Values found
-      integer(int64), intent(in) :: actual(:)
-      !> Their shape
-      integer, intent(in) :: actual_shape(:)
+      integer, intent(in) :: expected_shape(:)  !! Their shape; empty for a scalar
+      integer(int64), intent(in) :: actual(:)   !! Values found
+      integer, intent(in) :: actual_shape(:)    !! Their shape
       character(len=line_length) :: left, right
       integer(int64) :: e
       integer :: i
@@ -116,12 +104,9 @@ contains
       type(claim_t), intent(in) :: claim
       !> Expected texts: one for all, or as many as actual
       character(len=*), intent(in) :: expected(:)
-      !> Their shape; empty for a scalar
-      integer, intent(in) :: expected_shape(:)
-      !> Texts found
-      character(len=*), intent(in) :: actual(:)
-      !> Their shape
-      integer, intent(in) :: actual_shape(:)
+      integer, intent(in) :: expected_shape(:)   !! Their shape; empty for a scalar
+      character(len=*), intent(in) :: actual(:)  !! Texts found
+      integer, intent(in) :: actual_shape(:)     !! Their shape
       integer :: i, j
 
       if (.not. conformable(claim, expected_shape, actual_shape)) return
@@ -137,10 +122,8 @@ contains
    !> Judge that every condition has the wanted truth
    subroutine judge_truth(claim, conditions, wanted)
       type(claim_t), intent(in) :: claim
-      !> Conditions found
-      logical, intent(in) :: conditions(:)
-      !> What each must be
-      logical, intent(in) :: wanted
+      logical, intent(in) :: conditions(:)  !! Conditions found
+      logical, intent(in) :: wanted         !! What each must be
 
       if (all(conditions .eqv. wanted)) return
       call report(claim, trim(merge("true ", "false", wanted)), &
@@ -149,16 +132,11 @@ contains
 
    !> Whether two reals are as an assertion says; NaN never is
    pure function real_holds(assertion, left, right, tolerance) result(yes)
-      !> Name of the assertion
-      character(len=*), intent(in) :: assertion
-      !> First argument of the assertion
-      real(real64), intent(in) :: left
-      !> Second argument of the assertion
-      real(real64), intent(in) :: right
-      !> Room between them
-      real(real64), intent(in) :: tolerance
-      !> The answer
-      logical :: yes
+      character(len=*), intent(in) :: assertion  !! Name of the assertion
+      real(real64), intent(in) :: left           !! First argument of the assertion
+      real(real64), intent(in) :: right          !! Second argument of the assertion
+      real(real64), intent(in) :: tolerance      !! Room between them
+      logical :: yes                             !! The answer
 
       yes = .false.
       select case (assertion)
@@ -180,14 +158,10 @@ contains
 
    !> Whether two integers are as an assertion says
    pure function integer_holds(assertion, left, right) result(yes)
-      !> Name of the assertion
-      character(len=*), intent(in) :: assertion
-      !> First argument of the assertion
-      integer(int64), intent(in) :: left
-      !> Second argument of the assertion
-      integer(int64), intent(in) :: right
-      !> The answer
-      logical :: yes
+      character(len=*), intent(in) :: assertion  !! Name of the assertion
+      integer(int64), intent(in) :: left         !! First argument of the assertion
+      integer(int64), intent(in) :: right        !! Second argument of the assertion
+      logical :: yes                             !! The answer
 
       yes = .false.
       select case (assertion)
@@ -207,12 +181,9 @@ contains
    !> Whether two shapes can be compared: one is a scalar's or both are the same; reports if not
    function conformable(claim, expected_shape, actual_shape) result(yes)
       type(claim_t), intent(in) :: claim
-      !> One shape
-      integer, intent(in) :: expected_shape(:)
-      !> The other shape
-      integer, intent(in) :: actual_shape(:)
-      !> The answer
-      logical :: yes
+      integer, intent(in) :: expected_shape(:)  !! One shape
+      integer, intent(in) :: actual_shape(:)    !! The other shape
+      logical :: yes                            !! The answer
       character(len=line_length) :: left, right
 
       yes = size(expected_shape) == 0
@@ -226,14 +197,10 @@ contains
    !> Report a claim that does not hold
    subroutine report(claim, left, right, rest, where_found)
       type(claim_t), intent(in) :: claim
-      !> First argument of the assertion
-      character(len=*), intent(in) :: left
-      !> Second argument of the assertion
-      character(len=*), intent(in) :: right
-      !> More to say; may be empty
-      character(len=*), intent(in) :: rest
-      !> Which element of an array; may be empty
-      character(len=*), intent(in) :: where_found
+      character(len=*), intent(in) :: left         !! First argument of the assertion
+      character(len=*), intent(in) :: right        !! Second argument of the assertion
+      character(len=*), intent(in) :: rest         !! More to say; may be empty
+      character(len=*), intent(in) :: where_found  !! Which element of an array; may be empty
       character(len=len(claim%message) + len(left) + len(right) + 2*line_length) :: lines(5)
 
       lines = [character(len=len(lines)) :: claim%message, "expected: "//left, &
@@ -247,12 +214,9 @@ contains
 
    !> Which element of an array is meant; empty for a scalar
    pure function element(i, extents) result(text)
-      !> Place in array element order, from 1
-      integer, intent(in) :: i
-      !> Shape of the array, of rank 2 at most
-      integer, intent(in) :: extents(:)
-      !> Such as "element: 3 1"
-      character(len=line_length) :: text
+      integer, intent(in) :: i            !! Place in array element order, from 1
+      integer, intent(in) :: extents(:)   !! Shape of the array, of rank 2 at most
+      character(len=line_length) :: text  !! Such as "element: 3 1"
 
       text = ""
       if (size(extents) == 1) write (text, "('element: ', i0)") i
@@ -262,10 +226,8 @@ contains
 
    !> A text without the blanks and tabs at its ends
    pure function core(text) result(inner)
-      !> Any text
-      character(len=*), intent(in) :: text
-      !> Its core; of length 0 if there is none
-      character(len=:), allocatable :: inner
+      character(len=*), intent(in) :: text    !! Any text
+      character(len=:), allocatable :: inner  !! Its core; of length 0 if there is none
       character(len=2), parameter :: white = " "//achar(9)
 
       inner = text(max(1, verify(text, white)):verify(text, white, back=.true.))

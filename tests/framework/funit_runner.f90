@@ -11,10 +11,8 @@ module funit_runner
 
    !> Where an assertion stands
    type :: SourceLocation
-      !> Name of the .pf file, without its folder
-      character(len=255) :: fileName
-      !> Line of that file, counted from 1
-      integer :: lineNumber
+      character(len=255) :: fileName  !! Name of the .pf file, without its folder
+      integer :: lineNumber           !! Line of that file, counted from 1
    end type SourceLocation
 
    abstract interface
@@ -25,8 +23,7 @@ module funit_runner
 
    !> One test with its surroundings
    type :: TestMethod
-      !> Name of the subroutine
-      character(len=63) :: name
+      character(len=63) :: name  !! Name of the subroutine
       !> The test itself
       procedure(test_procedure), pointer, nopass :: method => null()
       !> Runs before the test; null if there is none
@@ -37,20 +34,16 @@ module funit_runner
 
    !> The tests of one .pf file, in the order of the file
    type :: TestSuite
-      !> Name of the module, followed by _suite
-      character(len=63) :: name
-      !> The tests
-      type(TestMethod), allocatable :: test(:)
+      character(len=63) :: name                 !! Name of the module, followed by _suite
+      type(TestMethod), allocatable :: test(:)  !! The tests
    contains
       procedure :: addTest
    end type TestSuite
 
    !> What has been run so far
    type :: tally_t
-      !> Tests that were run
-      integer :: n_test = 0
-      !> Tests with one failure or more
-      integer :: n_failed = 0
+      integer :: n_test = 0    !! Tests that were run
+      integer :: n_failed = 0  !! Tests with one failure or more
    end type tally_t
 
    !> Failures of the test that runs now. The one module variable of the runner: an
@@ -70,18 +63,15 @@ contains
 
    !> Whether an assertion of the running test has failed
    function anyExceptions() result(yes)
-      !> The answer
-      logical :: yes
+      logical :: yes  !! The answer
 
       yes = n_failure > 0
    end function anyExceptions
 
    !> Report a failed assertion
    subroutine record_failure(location, headline, lines)
-      !> Where the assertion stands
-      type(SourceLocation), intent(in) :: location
-      !> Which assertion failed
-      character(len=*), intent(in) :: headline
+      type(SourceLocation), intent(in) :: location  !! Where the assertion stands
+      character(len=*), intent(in) :: headline      !! Which assertion failed
       !> What was said, expected and found; empty lines are left out
       character(len=*), intent(in) :: lines(:)
       integer :: i
@@ -99,8 +89,7 @@ contains
    !> written first, so that a crash shows whose it was
    subroutine run_suite(suite, tally)
       type(TestSuite), intent(in) :: suite
-      !> Counts to add to
-      type(tally_t), intent(inout) :: tally
+      type(tally_t), intent(inout) :: tally  !! Counts to add to
       integer(int64) :: start, end, rate
       integer :: i
 
@@ -123,8 +112,7 @@ contains
 
    !> Whether a test is to be run: -f TEXT, given once or more, selects names that contain a text
    logical function is_selected(name)
-      !> Name of the suite and the test
-      character(len=*), intent(in) :: name
+      character(len=*), intent(in) :: name  !! Name of the suite and the test
       character(len=255) :: word, text
       integer :: i
 
@@ -149,8 +137,7 @@ contains
 
    !> Write the closing line; a failure stops the program with code 2
    subroutine close_report(tally)
-      !> What has been run
-      type(tally_t), intent(in) :: tally
+      type(tally_t), intent(in) :: tally  !! What has been run
 
       if (tally%n_test == 0) then
          write (output_unit, "(a)") &

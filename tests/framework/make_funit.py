@@ -7,10 +7,8 @@ from pathlib import Path
 #: Fortran type of each kind of argument.
 TYPES = {"int": "integer", "long": "integer(int64)", "single": "real",
          "double": "real(real64)", "text": "character(len=*)", "truth": "logical"}
-#: The widest of a kind: what the comparisons take.
-WIDEN = {"int": "int({}, int64)", "single": "real({}, real64)"}
-#: Ranks of the first and of the second argument.
-RANKS = ((0, 0), (0, 1), (1, 1), (0, 2), (2, 2))
+WIDEN = {"int": "int({}, int64)", "single": "real({}, real64)"}  #: The widest of a kind: what the comparisons take.
+RANKS = ((0, 0), (0, 1), (1, 1), (0, 2), (2, 2))  #: Ranks of the first and of the second argument.
 ORDERS = ("LessThan", "LessThanOrEqual", "GreaterThan", "GreaterThanOrEqual")
 #: Words that pFUnit makes public: a test module that declares one does not compile there.
 TAKEN = ("catch", "disable", "every", "expectation", "false", "finalize", "initialize", "is",

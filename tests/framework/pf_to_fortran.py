@@ -29,8 +29,7 @@ ASSERTIONS = {
     "False": (1, {"message"}),
     "Fail": (1, set()),
 }
-#: Longest line of Fortran; an assertion grows by a few characters when it is translated.
-LINE_LENGTH = 132
+LINE_LENGTH = 132  #: Longest line of Fortran; an assertion grows by a few characters when it is translated.
 MODULE = re.compile(r"\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)(.*)", re.I)
 SUBROUTINE = re.compile(r"\s*subroutine\s+(\w+)\s*(\(\s*\))?\s*(!.*)?", re.I)
 UNMARKED = re.compile(r"\s*((pure|impure|recursive)\s+)*subroutine\s+(test_\w+).*", re.I)

@@ -9,10 +9,8 @@ from pathlib import Path
 
 from word_rules import WORDS, Word
 
-#: Code before a comment of Fortran, with its strings
-_CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^"'!])*""")
-#: A comment; directives such as `!$omp` have no blank after the mark
-_COMMENT = re.compile(r"(!!|!>|!)(?: (.*))?$")
+_CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^"'!])*""")  #: Code before a comment of Fortran, with its strings
+_COMMENT = re.compile(r"(!!|!>|!)(?: (.*))?$")  #: A comment; directives such as `!$omp` have no blank after the mark
 #: A sentence of a comment that begins with a clause instead of a verb, a noun phrase or `True if`
 CLAUSE = re.compile(r"(?:^|[.:] )(?:What|Whether|How|Which|Whose|By how much)\b")
 #: Words that comments do not use, in addition to those that pages do not use
@@ -43,8 +41,7 @@ COMMENT_WORDS = (
 
 #: A doc comment of Fortran or a docstring that begins with a clause instead of a verb or a noun phrase
 OPENING = re.compile(r"^\s*(?:!>|\"\"\")\s*(What|Whether|How|Which|That|Is|Has)\b")
-#: Subject of a commit: area, colon, verb
-SUBJECT = re.compile(r"^[a-z0-9_,/ -]+: ([a-z-]+) \S")
+SUBJECT = re.compile(r"^[a-z0-9_,/ -]+: ([a-z-]+) \S")  #: Subject of a commit: area, colon, verb
 SUBJECT_LENGTH = 65
 #: First words of a subject: what a change does. Other plain verbs join the list as they are needed
 VERBS = frozenset("""

@@ -24,11 +24,9 @@ class Statement:
     """A statement on one line, in small letters, without strings and comments."""
 
     text: str
-    #: Its first and last line in the file, from 1
-    first: int
+    first: int  #: Its first and last line in the file, from 1
     last: int
-    #: Whether a comment for FORD stands right before it, or behind it
-    documented: bool
+    documented: bool  #: Whether a comment for FORD stands right before it, or behind it
 
 
 def statements(lines: list[str]) -> Iterator[Statement]:
@@ -157,8 +155,7 @@ class Part:
     """A component of a type."""
 
     name: str
-    #: Name of its own type, empty for numbers and texts; of a type that is extended that type
-    type: str
+    type: str  #: Name of its own type, empty for numbers and texts; of a type that is extended that type
     allocates: bool
 
 

@@ -13,12 +13,9 @@ from word_rules import WORDS, Word
 REPOSITORY = Path(__file__).resolve().parents[2]
 #: Largest mean and 90th percentile of the words per sentence of a page
 MEAN_WORDS, LONG_WORDS = 20.0, 32
-#: Words of a list item or caption without a full stop that are no sentence yet
-FRAGMENT = 4
-#: Characters of a line of Markdown outside tables and code
-LINE_LENGTH = 120
-#: Significant digits of a number in prose
-DIGITS = 6
+FRAGMENT = 4  #: Words of a list item or caption without a full stop that are no sentence yet
+LINE_LENGTH = 120  #: Characters of a line of Markdown outside tables and code
+DIGITS = 6  #: Significant digits of a number in prose
 
 #: Phrases of pages that are not on the list of exceptions, and what to write instead
 PHRASES = (
@@ -44,8 +41,7 @@ PHRASES = (
 )
 #: A sentence that has no subject but a clause
 CLAUSE = re.compile(r"^(What|Whether|How much|How many|How far|How fast)\b")
-#: A day: history belongs to the list of changes
-DAY = re.compile(r"\b20\d\d-\d\d-\d\d\b")
+DAY = re.compile(r"\b20\d\d-\d\d-\d\d\b")  #: A day: history belongs to the list of changes
 #: Inline code that names a file of this repository
 FILE = re.compile(r"`((?:src|tests|docs|input|cmake|post)/[\w./*{}-]+)`")
 TEST = re.compile(r"`(test_\w+\.(?:py|pf))`")

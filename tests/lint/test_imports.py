@@ -9,10 +9,8 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-#: Folders of packages that import one another
-ROOTS = (REPOSITORY / "post", REPOSITORY / "tests")
-#: Most modules of a chain in which each imports the next
-LONGEST_CHAIN = 14
+ROOTS = (REPOSITORY / "post", REPOSITORY / "tests")  #: Folders of packages that import one another
+LONGEST_CHAIN = 14  #: Most modules of a chain in which each imports the next
 
 
 def imports(*roots: Path, packages: str = "**") -> dict[str, set[str]]:

@@ -12,8 +12,7 @@ import pytest
 import python_rules
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-#: The module that hands on the names of others: the library's face
-FACADES = {"voussoir"}
+FACADES = {"voussoir"}  #: The module that hands on the names of others: the library's face
 GOOD = """!> A module
 module good
    use other, only : thing

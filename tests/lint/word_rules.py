@@ -18,8 +18,7 @@ class Word:
 
     old: str
     new: str
-    #: Only messages are held to it: pages use the word well
-    messages_only: bool = False
+    messages_only: bool = False  #: Only messages are held to it: pages use the word well
 
     def places(self, text: str) -> Iterator[int]:
         """Where it begins in a text."""

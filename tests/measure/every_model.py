@@ -25,8 +25,7 @@ from pathlib import Path
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
 #: Keys that other modes have no use for
 USED = {"restitution": ("dynamic",), "damping": ("dynamic",), "unknowns": ("static", "dynamic"), "flow": ("static",)}
-#: Keys that this check chooses
-CHOSEN = ("mode", "geometry", "steps", "duration", "restart")
+CHOSEN = ("mode", "geometry", "steps", "duration", "restart")  #: Keys that this check chooses
 GROUP = re.compile(r"&(\w+)((?:'[^']*'|[^'/])*)/")
 KEY = re.compile(r"(\w+)\s*=\s*((?:'[^']*'|[^'=])*?)\s*(?=,?\s*\w+\s*=|,?\s*$)")
 MESSAGE = re.compile(r".+?:\d+: (error|warning): .")

@@ -17,8 +17,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
-#: How often each line of a source was run
-Counts = dict[Path, dict[int, int]]
+Counts = dict[Path, dict[int, int]]  #: How often each line of a source was run
 
 
 def count_lines(source: Path, build: Path) -> Counts:

@@ -17,8 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 INPUT = Path(__file__).resolve().parents[2] / "input"
-#: The status that valgrind ends with; no other one is a finding
-FOUND = 99
+FOUND = 99  #: The status that valgrind ends with; no other one is a finding
 VALGRIND = ["valgrind", "-q", f"--error-exitcode={FOUND}", "--leak-check=full",
             "--errors-for-leak-kinds=definite", "--show-leak-kinds=definite"]
 #: Decks of this check alone, by name

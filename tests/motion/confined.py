@@ -27,16 +27,11 @@ G, DENSITY = 9.81, 2400.0
 class Layout:
     """Shapes, friction and loads of a scene."""
 
-    #: Blocks that can move
-    blocks: list[Polygon]
-    #: Fixed blocks
-    ground: list[Polygon]
-    #: Friction angle [deg]
-    friction: float
-    #: Horizontal load over the weight
-    push: float = 0.0
-    #: Angle by which all points are turned about the origin [deg]
-    tilt: float = 0.0
+    blocks: list[Polygon]  #: Blocks that can move
+    ground: list[Polygon]  #: Fixed blocks
+    friction: float  #: Friction angle [deg]
+    push: float = 0.0  #: Horizontal load over the weight
+    tilt: float = 0.0  #: Angle by which all points are turned about the origin [deg]
 
 
 def box(left: float, low: float, right: float, high: float) -> Polygon:

@@ -24,8 +24,7 @@ Point = tuple[float, float]
 DEPTH, TOUCH = 1e-9, 1e-7
 #: Speed that counts as none, and slack of laws of contact, over the largest speed or acceleration
 SLOW, SLACK = 1e-8, 1e-7
-#: Force beyond the cones of friction that ends a state, over the largest
-FORCE = 1e-6
+FORCE = 1e-6  #: Force beyond the cones of friction that ends a state, over the largest
 #: Largest turn of a body in a step [rad], longest step [s], and most steps of a run
 TURN, STEP, MOST_STEPS = 0.02, 4e-3, 3000
 #: States of a frictional contact
@@ -45,11 +44,9 @@ def cross(a: Array, b: Array) -> float:
 class Body:
     """A convex polygon; one of mass 0 is fixed."""
 
-    #: Corners about the centre, anticlockwise
-    shape: Array
+    shape: Array  #: Corners about the centre, anticlockwise
     mass: float
-    #: Polar moment of inertia over the mass
-    inertia: float
+    inertia: float  #: Polar moment of inertia over the mass
 
     @staticmethod
     def of(points: Sequence[Point], density: float) -> tuple[Body, Array]:
@@ -75,8 +72,7 @@ class World:
     gravity: Point = (0.0, -9.81)
     restitution: float = 0.0
     friction: float = 0.0
-    #: Slower impacts have no answer: a bounce that dies away has impacts without end
-    slowest: float = 0.0
+    slowest: float = 0.0  #: Slower impacts have no answer: a bounce that dies away has impacts without end
     bodies: list[Body] = field(default_factory=list)
     #: Centre and turn of each body, and their rates: (bodies, 3)
     place: Array = field(default_factory=lambda: np.zeros((0, 3)))
@@ -84,12 +80,9 @@ class World:
     time: float = 0.0
     #: Times of impacts and the greatest speed of approach of each
     impacts: list[tuple[float, float]] = field(default_factory=list)
-    #: Largest rate of turning of a body on a contact that stays [rad/s]
-    rolled: float = 0.0
-    #: Largest acceleration that ended as a corner slid off its edge
-    lost: float = 0.0
-    #: States of the last contact forces, tried first
-    last: dict[Contact, int] = field(default_factory=dict)
+    rolled: float = 0.0  #: Largest rate of turning of a body on a contact that stays [rad/s]
+    lost: float = 0.0  #: Largest acceleration that ended as a corner slid off its edge
+    last: dict[Contact, int] = field(default_factory=dict)  #: States of the last contact forces, tried first
 
     def add(self, points: Sequence[Point], velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
             density: float = 2400.0) -> None:

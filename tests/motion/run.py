@@ -26,8 +26,7 @@ from pathlib import Path
 
 from scene import SLOW, Run, Scene, run_scene
 
-#: Modules of generators
-MODULES = ("bounces", "trains", "polygons", "drops", "supported", "stacks", "confined")
+MODULES = ("bounces", "trains", "polygons", "drops", "supported", "stacks", "confined")  #: Modules of generators
 #: Time steps [s] and unknowns at which answers must be the same
 STEPS, UNKNOWNS = (4e-3, 2e-3, 1e-3, 5e-4), (3, 6)
 #: Error of clean second order over the tolerance, and the tolerance over what may be left beyond it
@@ -40,10 +39,8 @@ class Outcome:
 
     family: str
     seed: int
-    #: Largest error over its tolerance
-    worst: float = 0.0
-    #: Why the scene is wrong; empty if it is right
-    wrong: str = ""
+    worst: float = 0.0  #: Largest error over its tolerance
+    wrong: str = ""  #: Why the scene is wrong; empty if it is right
     is_slow: bool = False
     is_undecided: bool = False
 

@@ -28,8 +28,7 @@ from functools import cached_property
 from pathlib import Path
 
 Point = tuple[float, float]
-#: Processor time [s] beyond which a scene counts as slow; the program is ended there
-SLOW = 20
+SLOW = 20  #: Processor time [s] beyond which a scene counts as slow; the program is ended there
 
 
 def block(points: list[Point], words: str = "") -> str:
@@ -50,8 +49,7 @@ class Run:
     folder: Path
     status: int
     message: str
-    #: Processor time [s]
-    seconds: float
+    seconds: float  #: Processor time [s]
 
     @cached_property
     def result(self) -> dict[str, str]:
@@ -89,8 +87,7 @@ class Check:
     value: Callable[[Run], float]
     expected: float
     tolerance: float
-    #: Why the tolerance is what it is
-    reason: str
+    reason: str  #: Why the tolerance is what it is
 
 
 @dataclass(frozen=True)
@@ -98,20 +95,15 @@ class Scene:
     """Blocks, a deck, and its right answers."""
 
     blocks: str
-    #: Keys of &analysis
-    analysis: dict[str, object]
+    analysis: dict[str, object]  #: Keys of &analysis
     checks: list[Check] = field(default_factory=list)
-    #: Other groups of the deck
-    groups: str = ""
-    #: Keys of &material
-    material: dict[str, object] = field(default_factory=dict)
+    groups: str = ""  #: Other groups of the deck
+    material: dict[str, object] = field(default_factory=dict)  #: Keys of &material
     verdicts: tuple[str, ...] = ("completed",)
     #: Whether the answers are the same to the tolerances at every step, with 3 and with 6 unknowns at E = 1e12
     is_step_free: bool = False
-    #: Whether the tolerances are those of the deck's step, and fall with its square
-    is_second_order: bool = False
-    #: Whether `undecided` is counted by itself rather than as wrong
-    may_be_undecided: bool = False
+    is_second_order: bool = False  #: Whether the tolerances are those of the deck's step, and fall with its square
+    may_be_undecided: bool = False  #: Whether `undecided` is counted by itself rather than as wrong
 
     def deck(self, **changes: object) -> str:
         """The deck, with keys of &analysis changed."""

@@ -33,11 +33,9 @@ class Stack:
 
     mass: Array
     friction: Array
-    #: Places and speeds against the ground [m, m/s]
-    place: Array
+    place: Array  #: Places and speeds against the ground [m, m/s]
     speed: Array
-    #: Largest slip of a slab on another so far [m]
-    farthest: float = 0.0
+    farthest: float = 0.0  #: Largest slip of a slab on another so far [m]
 
     @property
     def limit(self) -> Array:

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 from scene import Check, Point, Run, block
 
-#: Relative error of positions and velocities where the integration is exact
-EXACT = 1e-6
+EXACT = 1e-6  #: Relative error of positions and velocities where the integration is exact
 ROUNDING = "free flight, uniform slides and impacts are exact: gaps of 1e-10 of a block and rounding remain"
 
 

@@ -9,10 +9,8 @@ from pathlib import Path
 import pytest
 import run
 
-#: Families with wrong answers, and why; a cure removes its line
-WRONG: dict[str, str] = {}
-#: Families whose answers depend on the step or the unknowns
-STEPS: dict[str, str] = {}
+WRONG: dict[str, str] = {}  #: Families with wrong answers, and why; a cure removes its line
+STEPS: dict[str, str] = {}  #: Families whose answers depend on the step or the unknowns
 #: Families that the tests compare between steps; the target compares all
 COMPARED = ["rotated_bounce", "train", "train_rough", "spin_rough", "tilted_block", "removed", "pendulum"]
 SEEDS = range(2)
@@ -26,8 +24,7 @@ FOUND = [("elastic_row", 8128002), ("elastic_row", 9119004), ("elastic_row", 101
          ("polygons_meet", 13700016)]
 #: Seeds whose corners roll, some onto an edge
 ROLLING = [("polygons_meet", 13700016), ("polygons_meet", 48000042), ("spin_rough_gravity", 9620021)]
-#: Seeds whose answers depended on the step or the unknowns
-DEPENDED = [("touching_row", 2711000)]
+DEPENDED = [("touching_row", 2711000)]  #: Seeds whose answers depended on the step or the unknowns
 
 
 def marked(names: list[str], wrong: dict[str, str]) -> list[object]:

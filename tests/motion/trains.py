@@ -12,12 +12,10 @@ from states import EXACT, ROUNDING, State, end_checks, in_time, measured, moving
 G = 9.81
 #: No blocks meet more slowly [m/s]: below twice the speed of free fall in a step, 0.08 m/s at 4 ms, they do not rebound
 SLOWEST = 0.1
-#: Impacts of one block are farther apart in time [s], and none is nearer to the end of the run
-APART = 1e-4
+APART = 1e-4  #: Impacts of one block are farther apart in time [s], and none is nearer to the end of the run
 
 
-#: Gap [m] and approach speed [m/s] of rounding
-TOUCH = 1e-12
+TOUCH = 1e-12  #: Gap [m] and approach speed [m/s] of rounding
 
 
 @dataclass
@@ -29,8 +27,7 @@ class Train:
     mass: list[float]
     speed: list[float]
     restitution: float
-    #: Deceleration of sliding blocks [m/s2]
-    friction: float = 0.0
+    friction: float = 0.0  #: Deceleration of sliding blocks [m/s2]
     time: float = 0.0
     #: Time of the last impact of each block, and the slowest approach and the shortest time between impacts of a block
     struck: list[float] = field(default_factory=list)
@@ -124,8 +121,7 @@ class Options:
     restitution: tuple[float, ...] = (0.0, 0.2, 0.5, 0.7, 1.0)
     rows: int = 1
     may_stop: bool = True
-    #: Whether blocks stop within steps, for which the integration is of second order
-    is_second_order: bool = False
+    is_second_order: bool = False  #: Whether blocks stop within steps, for which the integration is of second order
 
 
 def draw(pick: random.Random, options: Options, restitution: float) -> tuple[Train, list[float], float, float]:

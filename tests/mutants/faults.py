@@ -17,8 +17,7 @@ IDLE = re.compile(
     r"\s*(!|use\b|implicit\b|private\b|public\b|module\b|submodule\b|contains\b|end\b|type\b|interface\b|"
     r"(pure |elemental |impure |recursive )*(real|integer|logical|character|complex|class|subroutine|function)\b|"
     r"procedure\b|else\s*$|return\b|exit\b|cycle\b|import\b|allocate\b|deallocate\b)")
-#: Declarations of constants, whose values count
-CONSTANT = re.compile(r"\s*(real|integer)\b.*\bparameter\b.*::.*=")
+CONSTANT = re.compile(r"\s*(real|integer)\b.*\bparameter\b.*::.*=")  #: Declarations of constants, whose values count
 #: A real number with its kind; of the argument of an inquiry its kind alone counts
 REAL = re.compile(r"(?<![\w.])(?<!tiny\()(?<!huge\()(?<!epsilon\()(\d+\.\d*(?:e[+-]?\d+)?)_wp")
 COMPARISONS = {"<": ("<=", ">"), "<=": ("<", ">"), ">": (">=", "<"), ">=": (">", "<"), "==": ("/=",), "/=": ("==",)}

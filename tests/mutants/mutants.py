@@ -40,8 +40,7 @@ LEVELS = ("package", "unit", "physics", "suite")
 #: What ctest runs at the levels that are asked of several faults at once
 PROGRAMS = {"physics": ("command_unit", "physics", "command_physics"),
             "suite": ("every_model", "cli", "motion", "post", "fuzz_blocks", "fuzz_restart", "fuzz")}
-#: A run of `dda` may take so many seconds of processor
-MOST_SECONDS = 60
+MOST_SECONDS = 60  #: A run of `dda` may take so many seconds of processor
 
 
 @dataclass
@@ -50,14 +49,10 @@ class Copy:
 
     root: Path
     jobs: int
-    #: Unit programs, and the text of their tests
-    units: dict[str, str] = field(default_factory=dict)
-    #: How each object is compiled, by source
-    objects: dict[str, list[dict[str, str]]] = field(default_factory=dict)
-    #: Seconds of processor and of the clock
-    usual: dict[str, tuple[float, float]] = field(default_factory=dict)
-    #: What ctest runs, by name
-    commands: dict[str, list[str]] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)  #: Unit programs, and the text of their tests
+    objects: dict[str, list[dict[str, str]]] = field(default_factory=dict)  #: How each object is compiled, by source
+    usual: dict[str, tuple[float, float]] = field(default_factory=dict)  #: Seconds of processor and of the clock
+    commands: dict[str, list[str]] = field(default_factory=dict)  #: What ctest runs, by name
 
     @property
     def build(self) -> Path:

@@ -32,8 +32,7 @@ class Outcome:
 
     status: int
     error: str
-    #: Processor time [s] and largest memory [kB] of the command with its own processes
-    seconds: float
+    seconds: float  #: Processor time [s] and largest memory [kB] of the command with its own processes
     memory: int
 
     def fault(self) -> str:

@@ -10,12 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from drawn_files import Point, groups
 
-#: Metres of a unit by its name, and its number as $INSUNITS
-UNITS = {"m": (1.0, 6), "mm": (1e-3, 4)}
+UNITS = {"m": (1.0, 6), "mm": (1e-3, 4)}  #: Metres of a unit by its name, and its number as $INSUNITS
 #: Where drawings begin [m]: at the origin, and in a national grid
 PLACES = {"near": (0.0, 0.0), "far": (512340.25, 5412345.5)}
-#: Voussoirs of a ring
-STONES = 7
+STONES = 7  #: Voussoirs of a ring
 Lines = list[str]
 
 

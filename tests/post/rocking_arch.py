@@ -10,8 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 G = 9.81
-#: Turn of a voussoir from which no arch comes back [rad]
-FALLEN = 0.5
+FALLEN = 0.5  #: Turn of a voussoir from which no arch comes back [rad]
 
 
 class Arch:

@@ -24,8 +24,7 @@ BRIDGE = (
     "&joint friction_deg = 31 /\n&material unit_weight = 20e3 /\n"
     "&fill height = 0.165, unit_weight = 20e3 /\n&vehicle axles = 40e3, worst = .true. /\n"
 )
-#: Where the page has the geometric safety factor
-SAFETY = r'Geometric safety factor</th><td class="number">([\d.]+)<'
+SAFETY = r'Geometric safety factor</th><td class="number">([\d.]+)<'  #: Where the page has the geometric safety factor
 
 
 def test_equal_axles_that_are_close_share_a_label() -> None:

@@ -20,8 +20,7 @@ from voussoir.command.main import main  # noqa: E402
 DDA = os.environ.get("DDA", "")
 pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 
-#: Mutants of parts; the target fuzz asks for more
-MUTANTS = int(os.environ.get("MUTANTS", "12"))
+MUTANTS = int(os.environ.get("MUTANTS", "12"))  #: Mutants of parts; the target fuzz asks for more
 SWEEP = """&arch voussoirs = 8 /
 &search /
 &sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 12 /

@@ -24,8 +24,7 @@ from live_assemblies import held_state, random_assembly  # noqa: E402
 from test_live_loads import friction_of, table  # noqa: E402
 
 ROWS = [row for row in table("practice_multi_ring.csv") if row["P_over_weight_one_coulomb_state"]]
-#: Slower than the others: half the way there and back for ever
-SHARES = {("0.12", "2", "0.6"): 0.15}
+SHARES = {("0.12", "2", "0.6"): 0.15}  #: Slower than the others: half the way there and back for ever
 
 
 def search(folder: Path, blocks: str, friction: str) -> tuple[dict[str, str], Scene]:

@@ -20,8 +20,7 @@ from voussoir.command.main import main  # noqa: E402
 
 DDA = os.environ.get("DDA", "")
 pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
-#: Mutants of tables; the target fuzz asks for more
-MUTANTS = int(os.environ.get("MUTANTS", "8"))
+MUTANTS = int(os.environ.get("MUTANTS", "8"))  #: Mutants of tables; the target fuzz asks for more
 DECKS = {
     "moves": "&arch voussoirs = 6, thickness_ratio = 0.09 /\n&analysis geometry = 'current' /\n"
     "&output frames = 3, blocks = .true., joints = .true. /\n"

@@ -20,10 +20,8 @@ from voussoir.dda_program import DdaError  # noqa: E402
 from voussoir.imports.limits import MOST_ELAPSED  # noqa: E402
 
 MUTANTS, SEED = int(os.environ.get("MUTANTS", "3")), int(os.environ.get("SEED", "1"))
-#: Tests of so many mutants at most: a test has a time limit
-PARTS = range(0, MUTANTS, 20)
-#: Mutants read in this process for one read by the command
-QUICK = 20 if MUTANTS == 3 else 1
+PARTS = range(0, MUTANTS, 20)  #: Tests of so many mutants at most: a test has a time limit
+QUICK = 20 if MUTANTS == 3 else 1  #: Mutants read in this process for one read by the command
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -23,8 +23,7 @@ from odd_assemblies import UNIT_WEIGHT, odd_assembly  # noqa: E402
 
 #: Assemblies of every kind: smooth, lifted by as much as they weigh, on one corner, held by what rounding leaves
 SEEDS = [0, 3, 9, 15, 18, 34, 37, 38, 46, 77, 83, 95, 97, 110, 115, 123, 126, 128, 140, 150, 153]
-#: The largest factor that is looked for
-MOST = 50.0
+MOST = 50.0  #: The largest factor that is looked for
 
 
 def run(

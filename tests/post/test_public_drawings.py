@@ -14,8 +14,7 @@ pytest.importorskip("shapely")
 
 from voussoir.command.main import main  # noqa: E402
 
-#: How far chords may be from their arcs [m]
-TOLERANCE = 1e-3
+TOLERANCE = 1e-3  #: How far chords may be from their arcs [m]
 
 
 def polygons(file: Path) -> list[np.ndarray]:

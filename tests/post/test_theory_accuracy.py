@@ -18,8 +18,7 @@ from voussoir import theory  # noqa: E402
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 THEORIES = ("heyman", "ccr", "milankovitch")
-#: Relative errors allowed in hinge, thickness and thrust
-ALLOWED = np.array([4e-15, 8e-15, 2e-14])
+ALLOWED = np.array([4e-15, 8e-15, 2e-14])  #: Relative errors allowed in hinge, thickness and thrust
 EPSILON = np.finfo(float).eps
 GENERATOR = np.random.default_rng(20140901)
 

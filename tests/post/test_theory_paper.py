@@ -26,8 +26,7 @@ DDA = {
     (row["table"], float(row["alpha_deg"]), row["blocks"], float(row["beta_imposed_deg"] or 0)): row
     for row in read_table(ROOT / "input" / "paper" / "paper_tables.csv")
 }
-#: Half angle of the tables whose rows differ in something else [deg]
-TABLE_ANGLE = {"1": 90.0, "2": 90.0, "3": 140.0}
+TABLE_ANGLE = {"1": 90.0, "2": 90.0, "3": 140.0}  #: Half angle of the tables whose rows differ in something else [deg]
 
 
 def solution(table: str, key: str, name: str) -> dict[str, float]:

@@ -17,8 +17,7 @@ from test_verify import DECKS, HEAD, SCENES, run_deck  # noqa: E402
 
 from voussoir.command.main import main  # noqa: E402
 
-#: Mutants of each folder; the target fuzz asks for more
-MUTANTS = int(os.environ.get("MUTANTS", "12"))
+MUTANTS = int(os.environ.get("MUTANTS", "12"))  #: Mutants of each folder; the target fuzz asks for more
 #: Folders whose tables have rows of every kind
 FOLDERS = ("sweeps", "fill", "vehicle", "a weak tie", "live", "thickness")
 TABLES = ("results", "joints", "blocks", "proof_forces", "proof_motion")

@@ -10,8 +10,7 @@ import pytest
 
 from vtu_reader import read_vtu
 
-#: Where the unit tests of output write
-FOLDER = Path(os.environ.get("VOUSSOIR_BUILD", ".."), "tests", "scratch")
+FOLDER = Path(os.environ.get("VOUSSOIR_BUILD", ".."), "tests", "scratch")  #: Where the unit tests of output write
 POLYGONS = FOLDER / "test_dda_write_vtu_polygons.vtu"
 POINTS = FOLDER / "test_dda_write_vtu_points.vtu"
 INDEX = FOLDER / "test_dda_write_pvd.pvd"

@@ -19,12 +19,9 @@ MARK = b'<AppendedData encoding="raw">\n_'
 class Column:
     """One array of a file."""
 
-    #: VTK's word for the type of its numbers.
-    type: str
-    #: Names of the components, empty where the file has none.
-    components: list[str]
-    #: One tuple a point or cell.
-    rows: list[tuple[float, ...]]
+    type: str  #: VTK's word for the type of its numbers.
+    components: list[str]  #: Names of the components, empty where the file has none.
+    rows: list[tuple[float, ...]]  #: One tuple a point or cell.
 
     @property
     def numbers(self) -> list[float]:
@@ -37,10 +34,8 @@ class Grid:
     """What a file holds."""
 
     points: list[tuple[float, ...]]
-    #: Points of each cell, counted from 0.
-    cells: list[list[int]]
-    #: VTK's numbers of the kinds of cells.
-    types: list[int]
+    cells: list[list[int]]  #: Points of each cell, counted from 0.
+    types: list[int]  #: VTK's numbers of the kinds of cells.
     point_fields: dict[str, Column]
     cell_fields: dict[str, Column]
 

@@ -15,8 +15,7 @@ contains
    !> All entries of a block matrix, in the order of the blocks' numbers
    pure function full_matrix(matrix) result(full)
       type(block_matrix_t), intent(in) :: matrix
-      !> The same: (n, n)
-      real(wp), allocatable :: full(:, :)
+      real(wp), allocatable :: full(:, :)  !! The same: (n, n)
       integer :: b, e, n, row, column
 
       n = matrix%n_dof
@@ -43,12 +42,9 @@ contains
 
    !> Gaussian elimination with the largest pivot of each column
    pure function full_solution(matrix, load) result(x)
-      !> Regular matrix: (n, n)
-      real(wp), intent(in) :: matrix(:, :)
-      !> Right-hand side: (n)
-      real(wp), intent(in) :: load(:)
-      !> Solution: (n)
-      real(wp) :: x(size(load))
+      real(wp), intent(in) :: matrix(:, :)  !! Regular matrix: (n, n)
+      real(wp), intent(in) :: load(:)       !! Right-hand side: (n)
+      real(wp) :: x(size(load))             !! Solution: (n)
       real(wp) :: a(size(load), size(load) + 1), row(size(load) + 1)
       integer :: i, k, n, pivot
 
@@ -71,14 +67,10 @@ contains
 
    !> Random numbers for a matrix: couplings between -1 and 1, diagonals that outweigh them
    pure subroutine fill_positive_definite(random, n_dof, n_block, pair, matrix)
-      !> Where the numbers come from
-      type(random_t), intent(inout) :: random
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Coupled blocks: (2, n_entry)
-      integer, intent(in) :: pair(:, :)
+      type(random_t), intent(inout) :: random  !! Where the numbers come from
+      integer, intent(in) :: n_dof             !! Unknowns of one block
+      integer, intent(in) :: n_block           !! Number of blocks
+      integer, intent(in) :: pair(:, :)        !! Coupled blocks: (2, n_entry)
       type(block_matrix_t), intent(out) :: matrix
       integer :: b, c, e
 
@@ -98,18 +90,12 @@ contains
    !> Springs between blocks whose rows of displacements are random, and one from each block to the
    !> ground: those of contacts that slide with friction are not symmetric
    pure subroutine fill_springs(random, n_dof, n_block, pair, friction, symmetric, matrix)
-      !> Where the numbers come from
-      type(random_t), intent(inout) :: random
-      !> Unknowns of one block
-      integer, intent(in) :: n_dof
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Coupled blocks: (2, n_entry)
-      integer, intent(in) :: pair(:, :)
-      !> How far a spring is from a symmetric one; 0 is symmetric
-      real(wp), intent(in) :: friction
-      !> Whether the matrix is laid out as a symmetric one
-      logical, intent(in) :: symmetric
+      type(random_t), intent(inout) :: random  !! Where the numbers come from
+      integer, intent(in) :: n_dof  !! Unknowns of one block
+      integer, intent(in) :: n_block  !! Number of blocks
+      integer, intent(in) :: pair(:, :)  !! Coupled blocks: (2, n_entry)
+      real(wp), intent(in) :: friction  !! How far a spring is from a symmetric one; 0 is symmetric
+      logical, intent(in) :: symmetric  !! Whether the matrix is laid out as a symmetric one
       type(block_matrix_t), intent(out) :: matrix
       real(wp) :: a(3, n_dof), b(3, n_dof), spring(3, 3), skew(3)
       integer :: c, e, i
@@ -145,14 +131,10 @@ contains
 
    !> Pairs of different blocks
    pure subroutine draw_pairs(random, n_block, n_pair, pair)
-      !> Where they come from
-      type(random_t), intent(inout) :: random
-      !> Number of blocks
-      integer, intent(in) :: n_block
-      !> Number of pairs
-      integer, intent(in) :: n_pair
-      !> The pairs: (2, n_pair)
-      integer, allocatable, intent(out) :: pair(:, :)
+      type(random_t), intent(inout) :: random          !! Where they come from
+      integer, intent(in) :: n_block                   !! Number of blocks
+      integer, intent(in) :: n_pair                    !! Number of pairs
+      integer, allocatable, intent(out) :: pair(:, :)  !! The pairs: (2, n_pair)
       integer :: e
 
       allocate (pair(2, n_pair))
@@ -165,10 +147,8 @@ contains
 
    !> The numbers 1 to n in disorder
    pure subroutine shuffled(random, number)
-      !> Where the disorder comes from
-      type(random_t), intent(inout) :: random
-      !> The numbers: (n)
-      integer, intent(out) :: number(:)
+      type(random_t), intent(inout) :: random  !! Where the disorder comes from
+      integer, intent(out) :: number(:)        !! The numbers: (n)
       real(wp) :: key(size(number))
       integer :: i
 
@@ -178,8 +158,7 @@ contains
 
    !> Products of two blocks that a factorisation takes
    pure real(wp) function products(matrix)
-      !> The matrix, of which the pattern counts
-      type(block_matrix_t), intent(in) :: matrix
+      type(block_matrix_t), intent(in) :: matrix  !! The matrix, of which the pattern counts
       type(elimination_plan_t) :: plan
 
       call plan_panels(matrix, plan)

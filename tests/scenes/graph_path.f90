@@ -12,12 +12,9 @@ module graph_path
    !> Where a graph is on its path
    type :: path_walk_t
       type(loading_path_t) :: path
-      !> Load, forces and motion
-      type(coulomb_state_t) :: state
-      !> Rates of forces and motion with the load
-      type(path_rate_t) :: rate
-      !> Outcome of the last piece of the path
-      type(path_result_t) :: result
+      type(coulomb_state_t) :: state  !! Load, forces and motion
+      type(path_rate_t) :: rate       !! Rates of forces and motion with the load
+      type(path_result_t) :: result   !! Outcome of the last piece of the path
    end type path_walk_t
 
 contains
@@ -25,8 +22,7 @@ contains
    !> The beginning of a path, under the dead load; nothing grows yet
    subroutine begin_path(graph, dead_load, walk)
       type(joint_graph_t), intent(in) :: graph
-      !> The load: (n_dof, n_block) [N/m, N/m, N ...]
-      real(wp), intent(in) :: dead_load(:, :)
+      real(wp), intent(in) :: dead_load(:, :)  !! The load: (n_dof, n_block) [N/m, N/m, N ...]
       type(path_walk_t), intent(out) :: walk
       type(joint_graph_t) :: taken
 
@@ -39,8 +35,7 @@ contains
    !> Go on by so much of what grows
    subroutine follow(walk, h)
       type(path_walk_t), intent(inout) :: walk
-      !> The share
-      real(wp), intent(in) :: h
+      real(wp), intent(in) :: h  !! The share
 
       call follow_path(walk%path, walk%state, walk%rate, h, walk%result)
    end subroutine follow

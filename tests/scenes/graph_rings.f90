@@ -15,18 +15,12 @@ contains
    !> go through all rings; the springings cannot move. Unit area has unit weight and unit mass
    pure subroutine new_rings(embrace_deg, thickness, voussoirs, rings, friction, loaded, graph, &
       & weight, load)
-      !> Angle of embrace [degrees]
-      real(wp), intent(in) :: embrace_deg
-      !> Of all rings together
-      real(wp), intent(in) :: thickness
-      !> Voussoirs of a ring
-      integer, intent(in) :: voussoirs
-      !> Rings
-      integer, intent(in) :: rings
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
-      !> Voussoir of the uppermost ring that is loaded, from the left
-      integer, intent(in) :: loaded
+      real(wp), intent(in) :: embrace_deg  !! Angle of embrace [degrees]
+      real(wp), intent(in) :: thickness  !! Of all rings together
+      integer, intent(in) :: voussoirs  !! Voussoirs of a ring
+      integer, intent(in) :: rings  !! Rings
+      real(wp), intent(in) :: friction  !! Coefficient of friction
+      integer, intent(in) :: loaded  !! Voussoir of the uppermost ring that is loaded, from the left
       type(joint_graph_t), intent(out) :: graph
       !> Weight of each voussoir, ring by ring from inside, from left to right: (3, n_block)
       real(wp), allocatable, intent(out) :: weight(:, :)
@@ -78,24 +72,18 @@ contains
 
    !> Direction at an angle from upright, positive to the right
    pure function direction(angle_deg)
-      !> The angle [degrees]
-      real(wp), intent(in) :: angle_deg
-      !> Unit vector
-      real(wp) :: direction(2)
+      real(wp), intent(in) :: angle_deg  !! The angle [degrees]
+      real(wp) :: direction(2)           !! Unit vector
 
       direction = [sin(angle_deg*degree), cos(angle_deg*degree)]
    end function direction
 
    !> Area, centre and polar moment of area of a polygon about its centre
    pure subroutine take_area(corner, area, centre, polar)
-      !> Corners in order: (2, n)
-      real(wp), intent(in) :: corner(:, :)
-      !> Area
-      real(wp), intent(out) :: area
-      !> Centre
-      real(wp), intent(out) :: centre(2)
-      !> Polar moment
-      real(wp), intent(out) :: polar
+      real(wp), intent(in) :: corner(:, :)  !! Corners in order: (2, n)
+      real(wp), intent(out) :: area         !! Area
+      real(wp), intent(out) :: centre(2)    !! Centre
+      real(wp), intent(out) :: polar        !! Polar moment
       real(wp) :: cross, next(2), here(2)
       integer :: i, n
 

@@ -12,10 +12,8 @@ contains
 
    !> A graph without numbers
    pure subroutine new_graph(n_block, n_joint, graph)
-      !> Blocks that can move
-      integer, intent(in) :: n_block
-      !> Joints
-      integer, intent(in) :: n_joint
+      integer, intent(in) :: n_block  !! Blocks that can move
+      integer, intent(in) :: n_joint  !! Joints
       type(joint_graph_t), intent(out) :: graph
 
       graph%n_block = n_block
@@ -27,12 +25,9 @@ contains
 
    !> Blocks of unit height one upon the other
    pure subroutine new_tower(n, width, friction, graph)
-      !> Number of blocks
-      integer, intent(in) :: n
-      !> Their width
-      real(wp), intent(in) :: width
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      integer, intent(in) :: n          !! Number of blocks
+      real(wp), intent(in) :: width     !! Their width
+      real(wp), intent(in) :: friction  !! Coefficient of friction
       type(joint_graph_t), intent(out) :: graph
       real(wp) :: centre(2, n)
       integer :: b
@@ -47,8 +42,7 @@ contains
 
    !> A triangle of height one whose tip points down into a right-angled notch
    pure subroutine new_wedge(friction, graph)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: friction  !! Coefficient of friction
       type(joint_graph_t), intent(out) :: graph
       real(wp), parameter :: centre(2, 1) = reshape([0.0_wp, 2.0_wp/3.0_wp], [2, 1])
 

@@ -14,17 +14,12 @@ contains
 
    !> A wall in running bond: bricks of 2 by 1, half bricks at the ends of every other course
    pure subroutine new_wall(units, courses, friction, graph, weight, push)
-      !> Bricks of a course
-      integer, intent(in) :: units
-      !> Courses
-      integer, intent(in) :: courses
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      integer, intent(in) :: units      !! Bricks of a course
+      integer, intent(in) :: courses    !! Courses
+      real(wp), intent(in) :: friction  !! Coefficient of friction
       type(joint_graph_t), intent(out) :: graph
-      !> Weight of each brick: (3, n_block)
-      real(wp), allocatable, intent(out) :: weight(:, :)
-      !> The same to the right: (3, n_block)
-      real(wp), allocatable, intent(out) :: push(:, :)
+      real(wp), allocatable, intent(out) :: weight(:, :)  !! Weight of each brick: (3, n_block)
+      real(wp), allocatable, intent(out) :: push(:, :)    !! The same to the right: (3, n_block)
       real(wp) :: head(0:units + 1, courses)
       integer :: bricks(courses), c, i
 
@@ -39,13 +34,10 @@ contains
 
    !> 25 bricks with a stepped edge, of unequal lengths and heights
    pure subroutine new_steps_wall(friction, graph, weight, push)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: friction  !! Coefficient of friction
       type(joint_graph_t), intent(out) :: graph
-      !> Weight of each brick: (3, 25)
-      real(wp), allocatable, intent(out) :: weight(:, :)
-      !> The same to the right: (3, 25)
-      real(wp), allocatable, intent(out) :: push(:, :)
+      real(wp), allocatable, intent(out) :: weight(:, :)  !! Weight of each brick: (3, 25)
+      real(wp), allocatable, intent(out) :: push(:, :)    !! The same to the right: (3, 25)
       real(wp), parameter :: left = 0.0_wp, right = 2.980916829816682_wp
       real(wp), parameter :: level(6) = [0.0_wp, 0.25011638446681367_wp, 0.6035971503472201_wp, &
          & 0.9749743829203876_wp, 1.2410130403590103_wp, 1.517347052446026_wp]
@@ -66,19 +58,15 @@ contains
 
    !> Courses of bricks whose unit area has unit weight and unit mass; joints have unit compliance
    pure subroutine lay_courses(bricks, head, level, friction, graph, weight, push)
-      !> Bricks of each course: (n)
-      integer, intent(in) :: bricks(:)
+      integer, intent(in) :: bricks(:)  !! Bricks of each course: (n)
       !> Ends of the bricks of each course from left to right: (maxval(bricks) + 1, n)
       real(wp), intent(in) :: head(0:, :)
       !> Height of the ground and of the top of each course: (n + 1)
       real(wp), intent(in) :: level(0:)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: friction  !! Coefficient of friction
       type(joint_graph_t), intent(out) :: graph
-      !> Weight of each brick: (3, n_block)
-      real(wp), allocatable, intent(out) :: weight(:, :)
-      !> The same to the right: (3, n_block)
-      real(wp), allocatable, intent(out) :: push(:, :)
+      real(wp), allocatable, intent(out) :: weight(:, :)  !! Weight of each brick: (3, n_block)
+      real(wp), allocatable, intent(out) :: push(:, :)    !! The same to the right: (3, n_block)
       real(wp), allocatable :: centre(:, :)
       real(wp) :: area, size_of(2)
       integer :: b, c, k, most
@@ -109,18 +97,14 @@ contains
 
    !> Joints between bricks of a course, under the first course, and between courses
    pure subroutine lay_joints(bricks, head, level, friction, centre, graph)
-      !> Bricks of each course: (n)
-      integer, intent(in) :: bricks(:)
+      integer, intent(in) :: bricks(:)  !! Bricks of each course: (n)
       !> Ends of the bricks of each course from left to right: (maxval(bricks) + 1, n)
       real(wp), intent(in) :: head(0:, :)
       !> Height of the ground and of the top of each course: (n + 1)
       real(wp), intent(in) :: level(0:)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
-      !> Centres of gravity: (2, n_block)
-      real(wp), intent(in) :: centre(:, :)
-      !> Receives the joints
-      type(joint_graph_t), intent(inout) :: graph
+      real(wp), intent(in) :: friction             !! Coefficient of friction
+      real(wp), intent(in) :: centre(:, :)         !! Centres of gravity: (2, n_block)
+      type(joint_graph_t), intent(inout) :: graph  !! Receives the joints
       real(wp) :: bed(2)
       integer :: below, c, first, j, k, under
 
@@ -160,8 +144,7 @@ contains
 
    !> Give back the room that no joint needs
    pure subroutine keep_joints(n, graph)
-      !> Number of joints
-      integer, intent(in) :: n
+      integer, intent(in) :: n  !! Number of joints
       type(joint_graph_t), intent(inout) :: graph
 
       graph%block = graph%block(:, :n)
@@ -175,8 +158,7 @@ contains
 
    !> Springs as soft as the blocks on both sides are wide, by unit length of the joint
    pure subroutine wide_springs(graph)
-      !> The joints; the mean of their compliance is 1
-      type(joint_graph_t), intent(inout) :: graph
+      type(joint_graph_t), intent(inout) :: graph  !! The joints; the mean of their compliance is 1
       integer :: j
 
       do j = 1, size(graph%kind)
@@ -189,20 +171,13 @@ contains
    !> One joint: the normal points from its first block to its second and lies to the right of the
    !> way from the first corner to the second
    pure subroutine add_joint(graph, centre, j, block, start, finish, friction)
-      !> Receives the joint
-      type(joint_graph_t), intent(inout) :: graph
-      !> Centres of gravity: (2, n_block)
-      real(wp), intent(in) :: centre(:, :)
-      !> Its number
-      integer, intent(in) :: j
-      !> Its blocks: (2)
-      integer, intent(in) :: block(2)
-      !> First corner: (2)
-      real(wp), intent(in) :: start(2)
-      !> Second corner: (2)
-      real(wp), intent(in) :: finish(2)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      type(joint_graph_t), intent(inout) :: graph  !! Receives the joint
+      real(wp), intent(in) :: centre(:, :)         !! Centres of gravity: (2, n_block)
+      integer, intent(in) :: j                     !! Its number
+      integer, intent(in) :: block(2)              !! Its blocks: (2)
+      real(wp), intent(in) :: start(2)             !! First corner: (2)
+      real(wp), intent(in) :: finish(2)            !! Second corner: (2)
+      real(wp), intent(in) :: friction             !! Coefficient of friction
       real(wp) :: along(2), arm(2), direction(2, 3), point(2, 3)
       integer :: k, side
 

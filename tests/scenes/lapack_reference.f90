@@ -10,8 +10,7 @@ module lapack_reference
 
    !> Cholesky factor in LAPACK's band storage
    type :: band_factor_t
-      !> Unknowns of one block
-      integer :: n_dof = 0
+      integer :: n_dof = 0  !! Unknowns of one block
       !> Lower factor: (width of the band + 1, number of unknowns)
       real(wp), allocatable :: band(:, :)
       !> Whether the matrix was positive definite, so that the factor can be used
@@ -22,66 +21,41 @@ module lapack_reference
       !> LAPACK: Cholesky factorisation of a band matrix
       pure subroutine dpbtrf(uplo, n, kd, ab, ldab, info)
          import :: wp
-         !> "L": the lower triangle is stored
-         character(len=1), intent(in) :: uplo
-         !> Number of unknowns
-         integer, intent(in) :: n
-         !> Number of diagonals below the main one
-         integer, intent(in) :: kd
-         !> Rows of ab
-         integer, intent(in) :: ldab
-         !> Matrix in, factor out: (ldab, n)
-         real(wp), intent(inout) :: ab(ldab, *)
-         !> 0, or the order of the minor that is not positive definite
-         integer, intent(out) :: info
+         character(len=1), intent(in) :: uplo  !! "L": the lower triangle is stored
+         integer, intent(in) :: n  !! Number of unknowns
+         integer, intent(in) :: kd  !! Number of diagonals below the main one
+         integer, intent(in) :: ldab  !! Rows of ab
+         real(wp), intent(inout) :: ab(ldab, *)  !! Matrix in, factor out: (ldab, n)
+         integer, intent(out) :: info  !! 0, or the order of the minor that is not positive definite
       end subroutine dpbtrf
 
       !> LAPACK: substitution with a band factor
       pure subroutine dpbtrs(uplo, n, kd, nrhs, ab, ldab, b, ldb, info)
          import :: wp
-         !> "L": the lower factor is stored
-         character(len=1), intent(in) :: uplo
-         !> Number of unknowns
-         integer, intent(in) :: n
-         !> Number of diagonals below the main one
-         integer, intent(in) :: kd
-         !> Number of right-hand sides
-         integer, intent(in) :: nrhs
-         !> Rows of ab
-         integer, intent(in) :: ldab
-         !> Rows of b
-         integer, intent(in) :: ldb
-         !> Factor: (ldab, n)
-         real(wp), intent(in) :: ab(ldab, *)
-         !> Right-hand sides in, solutions out: (ldb, nrhs)
-         real(wp), intent(inout) :: b(ldb, *)
-         !> 0 if all is well
-         integer, intent(out) :: info
+         character(len=1), intent(in) :: uplo  !! "L": the lower factor is stored
+         integer, intent(in) :: n              !! Number of unknowns
+         integer, intent(in) :: kd             !! Number of diagonals below the main one
+         integer, intent(in) :: nrhs           !! Number of right-hand sides
+         integer, intent(in) :: ldab           !! Rows of ab
+         integer, intent(in) :: ldb            !! Rows of b
+         real(wp), intent(in) :: ab(ldab, *)   !! Factor: (ldab, n)
+         real(wp), intent(inout) :: b(ldb, *)  !! Right-hand sides in, solutions out: (ldb, nrhs)
+         integer, intent(out) :: info          !! 0 if all is well
       end subroutine dpbtrs
 
       !> LAPACK: estimate of the reciprocal condition number of a factored band matrix
       pure subroutine dpbcon(uplo, n, kd, ab, ldab, anorm, rcond, work, iwork, info)
          import :: wp
-         !> "L": the lower factor is stored
-         character(len=1), intent(in) :: uplo
-         !> Number of unknowns
-         integer, intent(in) :: n
-         !> Number of diagonals below the main one
-         integer, intent(in) :: kd
-         !> Rows of ab
-         integer, intent(in) :: ldab
-         !> Factor: (ldab, n)
-         real(wp), intent(in) :: ab(ldab, *)
-         !> One-norm of the matrix
-         real(wp), intent(in) :: anorm
-         !> Reciprocal condition number in the one-norm
-         real(wp), intent(out) :: rcond
-         !> Work space: (3*n)
-         real(wp), intent(out) :: work(*)
-         !> Work space: (n)
-         integer, intent(out) :: iwork(*)
-         !> 0 if all is well
-         integer, intent(out) :: info
+         character(len=1), intent(in) :: uplo  !! "L": the lower factor is stored
+         integer, intent(in) :: n              !! Number of unknowns
+         integer, intent(in) :: kd             !! Number of diagonals below the main one
+         integer, intent(in) :: ldab           !! Rows of ab
+         real(wp), intent(in) :: ab(ldab, *)   !! Factor: (ldab, n)
+         real(wp), intent(in) :: anorm         !! One-norm of the matrix
+         real(wp), intent(out) :: rcond        !! Reciprocal condition number in the one-norm
+         real(wp), intent(out) :: work(*)      !! Work space: (3*n)
+         integer, intent(out) :: iwork(*)      !! Work space: (n)
+         integer, intent(out) :: info          !! 0 if all is well
       end subroutine dpbcon
    end interface
 
@@ -99,8 +73,7 @@ contains
 
    !> Factor a matrix that lies in its band
    pure subroutine factor_band(factor)
-      !> The band in, the factor out
-      type(band_factor_t), intent(inout) :: factor
+      type(band_factor_t), intent(inout) :: factor  !! The band in, the factor out
       integer :: info, kd, n
 
       kd = size(factor%band, 1) - 1
@@ -112,8 +85,7 @@ contains
    !> Lay the blocks of a matrix into the band
    pure subroutine fill_band(matrix, factor)
       type(block_matrix_t), intent(in) :: matrix
-      !> Receives the band
-      type(band_factor_t), intent(inout) :: factor
+      type(band_factor_t), intent(inout) :: factor  !! Receives the band
       real(wp) :: block(matrix%n_dof, matrix%n_dof)
       integer :: b, c, e, first, offset, nd, kd
 
@@ -146,10 +118,8 @@ contains
 
    !> Solve for one right-hand side
    pure subroutine substitute(factor, x)
-      !> Usable factor
-      type(band_factor_t), intent(in) :: factor
-      !> Right-hand side in, solution out: (n_dof, n_block)
-      real(wp), intent(inout) :: x(:, :)
+      type(band_factor_t), intent(in) :: factor  !! Usable factor
+      real(wp), intent(inout) :: x(:, :)  !! Right-hand side in, solution out: (n_dof, n_block)
       integer :: info, n, kd
 
       kd = size(factor%band, 1) - 1
@@ -161,8 +131,7 @@ contains
    !> unit of length nor the size of a block shows; huge if the matrix is not positive definite
    pure function condition_estimate(matrix) result(condition)
       type(block_matrix_t), intent(in) :: matrix
-      !> Estimate of the condition number, at least 1
-      real(wp) :: condition
+      real(wp) :: condition  !! Estimate of the condition number, at least 1
       type(block_matrix_t) :: scaled
       type(band_factor_t) :: factor
       real(wp) :: scale(matrix%n_dof, size(matrix%place)), norm, reciprocal
@@ -197,8 +166,7 @@ contains
    pure function one_norm(matrix) result(norm)
       !> The matrix; entries of the same pair count apart, which can only enlarge the norm
       type(block_matrix_t), intent(in) :: matrix
-      !> The norm
-      real(wp) :: norm
+      real(wp) :: norm  !! The norm
       real(wp) :: column(matrix%n_dof, size(matrix%place))
       integer :: e
 
@@ -214,12 +182,9 @@ contains
 
    !> Product of a column and a row
    pure function outer(a, b) result(product)
-      !> Column: (n)
-      real(wp), intent(in) :: a(:)
-      !> Row: (m)
-      real(wp), intent(in) :: b(:)
-      !> a b': (n, m)
-      real(wp) :: product(size(a), size(b))
+      real(wp), intent(in) :: a(:)           !! Column: (n)
+      real(wp), intent(in) :: b(:)           !! Row: (m)
+      real(wp) :: product(size(a), size(b))  !! a b': (n, m)
 
       product = spread(a, 2, size(b))*spread(b, 1, size(a))
    end function outer

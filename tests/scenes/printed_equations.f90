@@ -15,8 +15,7 @@ contains
 
    !> Left side of eq. (1), Heyman: the A at which the hinge is at beta
    elemental function heyman_embrace(beta) result(a)
-      !> Inner hinge, (0, pi/2] [rad]
-      real(wp), intent(in) :: beta
+      real(wp), intent(in) :: beta  !! Inner hinge, (0, pi/2] [rad]
       !> A = h + 2/(2 + eta) with eqs. (2) and (3), which is eq. (1) without its cancelling factors
       real(wp) :: a
       real(wp) :: eta
@@ -48,7 +47,7 @@ contains
       real(wp), intent(in) :: beta  !! Inner hinge, (0, pi) [rad]
       real(wp), intent(in) :: eta
       integer, intent(in) :: which
-      real(wp) :: h                 !! h1 [w r]
+      real(wp) :: h  !! h1 [w r]
 
       h = thrust_through(beta, 1.0_wp, eta, which)
    end function lower_thrust

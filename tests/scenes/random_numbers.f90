@@ -9,8 +9,7 @@ module random_numbers
 
    !> A sequence of its own: the multiplicative generator of Park and Miller
    type :: random_t
-      !> From 1 to 2**31 - 2
-      integer(int64) :: state = 20080301_int64
+      integer(int64) :: state = 20080301_int64  !! From 1 to 2**31 - 2
    end type random_t
 
    !> Fill with numbers between -1 and 1
@@ -25,8 +24,7 @@ contains
    !> One number
    pure subroutine draw_scalar(random, x)
       type(random_t), intent(inout) :: random
-      !> Between -1 and 1
-      real(wp), intent(out) :: x
+      real(wp), intent(out) :: x  !! Between -1 and 1
 
       random%state = modulo(48271_int64*random%state, 2147483647_int64)
       x = 2.0_wp*real(random%state, wp)/2147483647.0_wp - 1.0_wp
@@ -35,8 +33,7 @@ contains
    !> Several numbers
    pure subroutine draw_vector(random, x)
       type(random_t), intent(inout) :: random
-      !> Between -1 and 1: (:)
-      real(wp), intent(out) :: x(:)
+      real(wp), intent(out) :: x(:)  !! Between -1 and 1: (:)
       integer :: i
 
       do i = 1, size(x)
@@ -47,8 +44,7 @@ contains
    !> A table of numbers
    pure subroutine draw_matrix(random, x)
       type(random_t), intent(inout) :: random
-      !> Between -1 and 1: (:, :)
-      real(wp), intent(out) :: x(:, :)
+      real(wp), intent(out) :: x(:, :)  !! Between -1 and 1: (:, :)
       integer :: j
 
       do j = 1, size(x, 2)
@@ -59,10 +55,8 @@ contains
    !> A whole number
    pure subroutine draw_index(random, n, i)
       type(random_t), intent(inout) :: random
-      !> Largest
-      integer, intent(in) :: n
-      !> From 1 to n
-      integer, intent(out) :: i
+      integer, intent(in) :: n   !! Largest
+      integer, intent(out) :: i  !! From 1 to n
       real(wp) :: x
 
       call draw_scalar(random, x)

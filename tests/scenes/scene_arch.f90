@@ -14,22 +14,14 @@ module scene_arch
 
    !> The arch; the value of the family is its thickness over its radius
    type, extends(family_t) :: arch_thickness_t
-      !> Number of voussoirs
-      integer :: voussoirs = 36
-      !> From the crown to a springing [rad]
-      real(wp) :: half_angle = pi/2.0_wp
-      !> Halfway through the thickness [m]
-      real(wp) :: radius = 10.0_wp
-      !> Largest angle of a chord; 0 for one chord a voussoir [deg]
-      real(wp) :: facet_deg = 0.0_wp
-      !> Weight per volume [N/m3]
-      real(wp) :: unit_weight = 22000.0_wp
-      !> Law of all joints
-      type(joint_law_t) :: law = joint_law_t(no_slip=.true.)
-      !> Material of the voussoirs
-      type(material_t) :: material
-      !> Settings of the run
-      type(settings_t) :: settings
+      integer :: voussoirs = 36  !! Number of voussoirs
+      real(wp) :: half_angle = pi/2.0_wp  !! From the crown to a springing [rad]
+      real(wp) :: radius = 10.0_wp  !! Halfway through the thickness [m]
+      real(wp) :: facet_deg = 0.0_wp  !! Largest angle of a chord; 0 for one chord a voussoir [deg]
+      real(wp) :: unit_weight = 22000.0_wp  !! Weight per volume [N/m3]
+      type(joint_law_t) :: law = joint_law_t(no_slip=.true.)  !! Law of all joints
+      type(material_t) :: material  !! Material of the voussoirs
+      type(settings_t) :: settings  !! Settings of the run
    contains
       !> Make the scene of one thickness
       procedure :: build => build_arch
@@ -37,10 +29,8 @@ module scene_arch
 
    !> The same of one thickness; the value of the family is the horizontal force over the weight
    type, extends(family_t) :: arch_push_t
-      !> The arch
-      type(arch_thickness_t) :: arch
-      !> Its thickness over its radius
-      real(wp) :: thickness_ratio = 0.15_wp
+      type(arch_thickness_t) :: arch         !! The arch
+      real(wp) :: thickness_ratio = 0.15_wp  !! Its thickness over its radius
    contains
       !> Make the scene of one push
       procedure :: build => build_pushed_arch
@@ -51,11 +41,9 @@ contains
    !> Make the scene of one thickness
    pure subroutine build_arch(family, value, scene, error)
       class(arch_thickness_t), intent(in) :: family
-      !> Thickness over radius
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! Thickness over radius
       type(scene_t), intent(out) :: scene
-      !> Never allocated
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Never allocated
       type(arch_shape_t) :: shape
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
@@ -81,11 +69,9 @@ contains
    !> Make the scene of one push
    pure subroutine build_pushed_arch(family, value, scene, error)
       class(arch_push_t), intent(in) :: family
-      !> Horizontal force over weight, to the right
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! Horizontal force over weight, to the right
       type(scene_t), intent(out) :: scene
-      !> Never allocated
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Never allocated
 
       call family%arch%build(family%thickness_ratio, scene, error)
       scene%settings%push = scene%settings%push + value

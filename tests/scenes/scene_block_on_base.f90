@@ -13,14 +13,10 @@ module scene_block_on_base
 
    !> What a search changes
    type :: varied_enum
-      !> Horizontal force over weight
-      integer :: push = 1
-      !> Angle of friction [deg]
-      integer :: friction_deg = 2
-      !> Width of the block [m]
-      integer :: width = 3
-      !> Weight per volume [N/m3]
-      integer :: unit_weight = 4
+      integer :: push = 1          !! Horizontal force over weight
+      integer :: friction_deg = 2  !! Angle of friction [deg]
+      integer :: width = 3         !! Width of the block [m]
+      integer :: unit_weight = 4   !! Weight per volume [N/m3]
    end type varied_enum
 
    !> Names of what a search changes
@@ -28,24 +24,16 @@ module scene_block_on_base
 
    !> The block; its base is block 1, it is block 2
    type, extends(family_t) :: block_on_base_t
-      !> Along the base [m]
-      real(wp) :: width = 1.0_wp
-      !> Across the base [m]
-      real(wp) :: height = 2.0_wp
+      real(wp) :: width = 1.0_wp   !! Along the base [m]
+      real(wp) :: height = 2.0_wp  !! Across the base [m]
       !> Angle by which block and base are turned counter-clockwise [rad]
       real(wp) :: slope = 0.0_wp
-      !> Horizontal force over weight, to the right
-      real(wp) :: push = 0.0_wp
-      !> Weight per volume [N/m3]
-      real(wp) :: unit_weight = 25000.0_wp
-      !> Law of the joint
-      type(joint_law_t) :: law
-      !> Material of the block
-      type(material_t) :: material
-      !> Settings; the push is added to theirs
-      type(settings_t) :: settings
-      !> One of varied
-      integer :: what = 1
+      real(wp) :: push = 0.0_wp             !! Horizontal force over weight, to the right
+      real(wp) :: unit_weight = 25000.0_wp  !! Weight per volume [N/m3]
+      type(joint_law_t) :: law              !! Law of the joint
+      type(material_t) :: material          !! Material of the block
+      type(settings_t) :: settings          !! Settings; the push is added to theirs
+      integer :: what = 1                   !! One of varied
    contains
       !> Make the scene of one value
       procedure :: build => build_block_on_base
@@ -56,11 +44,9 @@ contains
    !> Make the scene of one value of what is varied
    pure subroutine build_block_on_base(family, value, scene, error)
       class(block_on_base_t), intent(in) :: family
-      !> The value
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! The value
       type(scene_t), intent(out) :: scene
-      !> Never allocated
-      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable, intent(out) :: error  !! Never allocated
       type(model_t) :: model
       type(joint_law_t) :: law
       real(wp) :: push, width

@@ -23,38 +23,28 @@ module scene_case
    type :: told_t
       !> Its row of results.csv; `refused` is the verdict of what cannot be read
       type(result_row_t) :: row
-      !> Its rows of joints.csv
-      type(joint_row_t), allocatable :: joint(:)
-      !> Its rows of blocks.csv
-      type(told_blocks_t) :: blocks
-      !> What stands beside it; why it was refused
-      character(len=:), allocatable :: remark
-      !> What its deck was warned of, parted by |
-      character(len=:), allocatable :: warnings
+      type(joint_row_t), allocatable :: joint(:)  !! Its rows of joints.csv
+      type(told_blocks_t) :: blocks               !! Its rows of blocks.csv
+      character(len=:), allocatable :: remark     !! What stands beside it; why it was refused
+      character(len=:), allocatable :: warnings   !! What its deck was warned of, parted by |
       !> Velocities of the blocks at the end of a decision: (n_dof, n_block)
       real(wp), allocatable :: velocity(:, :)
-      !> Motions of the blocks: (n_dof, n_block)
-      real(wp), allocatable :: motion(:, :)
-      !> Forces of its bars: (n_bar) [N/m]
-      real(wp), allocatable :: bar_force(:)
-      !> Number of its pictures
-      integer :: pictures = 0
+      real(wp), allocatable :: motion(:, :)  !! Motions of the blocks: (n_dof, n_block)
+      real(wp), allocatable :: bar_force(:)  !! Forces of its bars: (n_bar) [N/m]
+      integer :: pictures = 0                !! Number of its pictures
       !> How far corners have gone in the last of them: (2, n_vertex) [m]
       real(wp), allocatable :: seen(:, :)
-      !> Whether blocks are taken away: (n_block)
-      logical, allocatable :: absent(:)
+      logical, allocatable :: absent(:)  !! Whether blocks are taken away: (n_block)
    end type told_t
 
 contains
 
    !> Compute the first case of a deck
    subroutine tell(groups, told, blocks, restart)
-      !> Lines of the deck, parted by |
-      character(len=*), intent(in) :: groups
+      character(len=*), intent(in) :: groups  !! Lines of the deck, parted by |
       !> What is told of it; begun anew here, for compilers write that out at each call otherwise
       type(told_t), intent(inout) :: told
-      !> Lines of its file of blocks, likewise
-      character(len=*), intent(in), optional :: blocks
+      character(len=*), intent(in), optional :: blocks  !! Lines of its file of blocks, likewise
       !> File that receives the end of a run in time
       character(len=*), intent(in), optional :: restart
       character(len=*), parameter :: name = "scene_case"

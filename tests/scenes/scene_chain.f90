@@ -13,8 +13,7 @@ contains
    !> its joint; an admissible motion has none below zero
    pure real(wp) function least_opening(chain, motion)
       type(chain_t), intent(in) :: chain
-      !> Motion of its blocks: (3, n) [m, m, 1]
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of its blocks: (3, n) [m, m, 1]
       real(wp) :: corner(2), gap(2), normal(2), slip
       integer :: end, j
 
@@ -35,14 +34,10 @@ contains
    !> How a corner moves with a block; those before the first and behind the last are fixed
    pure function moved(chain, motion, b, corner) result(way)
       type(chain_t), intent(in) :: chain
-      !> Motion of its blocks: (3, n) [m, m, 1]
-      real(wp), intent(in) :: motion(:, :)
-      !> Number of the block
-      integer, intent(in) :: b
-      !> The corner: (2) [m]
-      real(wp), intent(in) :: corner(2)
-      !> Its motion: (2) [m]
-      real(wp) :: way(2), arm(2)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of its blocks: (3, n) [m, m, 1]
+      integer, intent(in) :: b              !! Number of the block
+      real(wp), intent(in) :: corner(2)     !! The corner: (2) [m]
+      real(wp) :: way(2), arm(2)            !! Its motion: (2) [m]
 
       way = 0.0_wp
       if (b == 0 .or. b > size(motion, 2)) return
@@ -53,8 +48,7 @@ contains
    !> Power of the loads on a motion
    pure real(wp) function power_of_loads(chain, motion)
       type(chain_t), intent(in) :: chain
-      !> Motion of its blocks: (3, n) [m, m, 1]
-      real(wp), intent(in) :: motion(:, :)
+      real(wp), intent(in) :: motion(:, :)  !! Motion of its blocks: (3, n) [m, m, 1]
 
       power_of_loads = sum(chain%block%weight(1)*motion(1, :) + chain%block%weight(2)*motion(2, :))
    end function power_of_loads

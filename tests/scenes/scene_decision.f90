@@ -16,8 +16,7 @@ contains
    !> Decision of a family's scene
    pure function decision_at(family, value) result(decision)
       class(family_t), intent(in) :: family
-      !> Value of its parameter
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! Value of its parameter
       type(decision_t) :: decision
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -29,8 +28,7 @@ contains
    !> Decision of a family's scene by steps to rest or collapse
    pure function stepped_at(family, value) result(decision)
       class(family_t), intent(in) :: family
-      !> Value of its parameter
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value  !! Value of its parameter
       type(decision_t) :: decision
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -42,12 +40,9 @@ contains
    !> Verdicts of a family just below and just above a value
    pure function verdicts_around(family, value, margin) result(answer)
       class(family_t), intent(in) :: family
-      !> Value of its parameter
-      real(wp), intent(in) :: value
-      !> How far below and above
-      real(wp), intent(in) :: margin
-      !> One of verdict each: (2)
-      integer :: answer(2)
+      real(wp), intent(in) :: value   !! Value of its parameter
+      real(wp), intent(in) :: margin  !! How far below and above
+      integer :: answer(2)            !! One of verdict each: (2)
       type(decision_t) :: below, above
 
       below = decision_at(family, value - margin)

@@ -13,8 +13,7 @@ contains
 
    !> A deck that must be good; an empty one if it is not
    pure function deck_of(text) result(deck)
-      !> Its lines, parted by |
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Its lines, parted by |
       type(deck_t) :: deck
       type(error_t), allocatable :: error
       character(len=1) :: none(0)
@@ -25,12 +24,9 @@ contains
 
    !> What a deck is refused with instead of some words and advice; empty if it is with them, in their line
    pure function said(text, line, words) result(other)
-      !> Its lines, parted by |
-      character(len=*), intent(in) :: text
-      !> Line at fault; 0 for a deck that is good
-      integer, intent(in) :: line
-      !> Part of the message
-      character(len=*), intent(in) :: words
+      character(len=*), intent(in) :: text   !! Its lines, parted by |
+      integer, intent(in) :: line            !! Line at fault; 0 for a deck that is good
+      character(len=*), intent(in) :: words  !! Part of the message
       character(len=:), allocatable :: other
       type(deck_t) :: deck
       type(error_t), allocatable :: error
@@ -47,8 +43,7 @@ contains
 
    !> Lines of a text
    pure function lines_of(text) result(lines)
-      !> Parted by |
-      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: text  !! Parted by |
       character(len=len(text)) :: lines
       integer :: i
 

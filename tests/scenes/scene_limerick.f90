@@ -13,8 +13,7 @@ contains
 
    !> A model without blocks: one material of 2000 kg/m3 in gravity of 10 m/s2, one law
    pure function empty_model(friction) result(model)
-      !> Coefficient of friction
-      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: friction  !! Coefficient of friction
       type(limerick_model_t) :: model
       type(limerick_material_t) :: material
       type(joint_law_t) :: law
@@ -33,8 +32,7 @@ contains
    !> Add a block
    pure subroutine add_block(model, vertex)
       type(limerick_model_t), intent(inout) :: model
-      !> Its corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Its corners, counter-clockwise: (2, n) [m]
       real(wp), allocatable :: all_vertices(:, :)
       integer :: n
 
@@ -71,24 +69,18 @@ contains
 
    !> A rectangle
    pure function box(low, high) result(vertex)
-      !> Lower left corner: (2) [m]
-      real(wp), intent(in) :: low(2)
-      !> Upper right corner: (2) [m]
-      real(wp), intent(in) :: high(2)
-      !> Corners, counter-clockwise: (2, 4) [m]
-      real(wp) :: vertex(2, 4)
+      real(wp), intent(in) :: low(2)   !! Lower left corner: (2) [m]
+      real(wp), intent(in) :: high(2)  !! Upper right corner: (2) [m]
+      real(wp) :: vertex(2, 4)         !! Corners, counter-clockwise: (2, 4) [m]
 
       vertex = reshape([low, high(1), low(2), high, low(1), high(2)], [2, 4])
    end function box
 
    !> Points turned about the origin
    pure function rotated(vertex, angle) result(now)
-      !> The points: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Anticlockwise angle [rad]
-      real(wp), intent(in) :: angle
-      !> The points: (2, n) [m]
-      real(wp) :: now(2, size(vertex, 2))
+      real(wp), intent(in) :: vertex(:, :)  !! The points: (2, n) [m]
+      real(wp), intent(in) :: angle         !! Anticlockwise angle [rad]
+      real(wp) :: now(2, size(vertex, 2))   !! The points: (2, n) [m]
 
       now(1, :) = cos(angle)*vertex(1, :) - sin(angle)*vertex(2, :)
       now(2, :) = sin(angle)*vertex(1, :) + cos(angle)*vertex(2, :)

@@ -15,39 +15,30 @@ module scene_model
 
    !> What a scene is made of
    type :: model_t
-      !> Material of all blocks
-      type(material_t) :: material
-      !> Weight per volume of all blocks [N/m3]
-      real(wp) :: unit_weight = 25000.0_wp
-      !> Settings of the run
-      type(settings_t) :: settings
-      !> Corners of all blocks: (2, n_vertex) [m]
-      real(wp), allocatable :: vertex(:, :)
+      type(material_t) :: material           !! Material of all blocks
+      real(wp) :: unit_weight = 25000.0_wp   !! Weight per volume of all blocks [N/m3]
+      type(settings_t) :: settings           !! Settings of the run
+      real(wp), allocatable :: vertex(:, :)  !! Corners of all blocks: (2, n_vertex) [m]
       !> First vertex of each block, and one beyond the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
-      !> Blocks that cannot move: (n_block)
-      logical, allocatable :: fixed(:)
+      logical, allocatable :: fixed(:)  !! Blocks that cannot move: (n_block)
       !> Block and edge, block and edge of each joint: (4, n_joint)
       integer, allocatable :: edge_pair(:, :)
-      !> Law of each joint: (n_joint)
-      type(joint_law_t), allocatable :: law(:)
+      type(joint_law_t), allocatable :: law(:)  !! Law of each joint: (n_joint)
    end type model_t
 
 contains
 
    !> Take all blocks and joints out, and all settings
    pure subroutine empty(model)
-      !> Receives what a declared model is
-      type(model_t), intent(out) :: model
+      type(model_t), intent(out) :: model  !! Receives what a declared model is
 
    end subroutine empty
 
    !> Add a block
    pure subroutine add_block(model, vertex, fixed)
-      !> Receives the block as its last
-      type(model_t), intent(inout) :: model
-      !> Corners, counter-clockwise: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      type(model_t), intent(inout) :: model  !! Receives the block as its last
+      real(wp), intent(in) :: vertex(:, :)   !! Corners, counter-clockwise: (2, n) [m]
       !> Whether the block cannot move; it can if this is left out
       logical, intent(in), optional :: fixed
       logical :: held
@@ -63,12 +54,9 @@ contains
 
    !> Add a joint of two edges that lie together
    pure subroutine add_joint(model, edge_pair, law)
-      !> Receives the joint as its last
-      type(model_t), intent(inout) :: model
-      !> Block and edge, block and edge: (4)
-      integer, intent(in) :: edge_pair(4)
-      !> Law of the joint
-      type(joint_law_t), intent(in) :: law
+      type(model_t), intent(inout) :: model  !! Receives the joint as its last
+      integer, intent(in) :: edge_pair(4)    !! Block and edge, block and edge: (4)
+      type(joint_law_t), intent(in) :: law   !! Law of the joint
 
       if (.not. allocated(model%law)) allocate (model%edge_pair(4, 0), model%law(0))
       model%edge_pair = reshape([model%edge_pair, edge_pair], [4, size(model%edge_pair, 2) + 1])
@@ -79,8 +67,7 @@ contains
    pure function searched_scene(model, law) result(scene)
       !> The model, with a block or more; its joints do not count
       type(model_t), intent(in) :: model
-      !> Law of all joints
-      type(joint_law_t), intent(in) :: law
+      type(joint_law_t), intent(in) :: law  !! Law of all joints
       type(scene_t) :: scene
 
       scene%settings = model%settings
@@ -94,8 +81,7 @@ contains
 
    !> The scene of a model
    pure function scene_of(model) result(scene)
-      !> The model, with a block and a joint or more
-      type(model_t), intent(in) :: model
+      type(model_t), intent(in) :: model  !! The model, with a block and a joint or more
       type(scene_t) :: scene
 
       scene%settings = model%settings
@@ -107,14 +93,10 @@ contains
 
    !> A rectangle whose edges 1 to 4 are bottom, right, top and left
    pure function rectangle(corner, width, height) result(vertex)
-      !> Lower left corner: (2) [m]
-      real(wp), intent(in) :: corner(2)
-      !> From left to right [m]
-      real(wp), intent(in) :: width
-      !> From bottom to top [m]
-      real(wp), intent(in) :: height
-      !> Corners: (2, 4) [m]
-      real(wp) :: vertex(2, 4)
+      real(wp), intent(in) :: corner(2)  !! Lower left corner: (2) [m]
+      real(wp), intent(in) :: width      !! From left to right [m]
+      real(wp), intent(in) :: height     !! From bottom to top [m]
+      real(wp) :: vertex(2, 4)           !! Corners: (2, 4) [m]
 
       vertex = reshape([corner, corner + [width, 0.0_wp], corner + [width, height], &
          & corner + [0.0_wp, height]], [2, 4])
@@ -122,12 +104,9 @@ contains
 
    !> Points turned about the origin
    pure function turned(vertex, angle) result(other)
-      !> Points: (2, n) [m]
-      real(wp), intent(in) :: vertex(:, :)
-      !> Counter-clockwise [rad]
-      real(wp), intent(in) :: angle
-      !> The points: (2, n) [m]
-      real(wp) :: other(2, size(vertex, 2))
+      real(wp), intent(in) :: vertex(:, :)   !! Points: (2, n) [m]
+      real(wp), intent(in) :: angle          !! Counter-clockwise [rad]
+      real(wp) :: other(2, size(vertex, 2))  !! The points: (2, n) [m]
 
       other(1, :) = cos(angle)*vertex(1, :) - sin(angle)*vertex(2, :)
       other(2, :) = sin(angle)*vertex(1, :) + cos(angle)*vertex(2, :)

@@ -17,52 +17,33 @@ module scene_pile
 
    !> What is dropped
    type :: pile_t
-      !> Bricks in a row
-      integer :: columns = 5
-      !> Rows
-      integer :: rows = 5
-      !> Number that the places and turns are drawn with
-      integer :: seed = 20080301
-      !> Unknowns of a block
-      integer :: n_dof = 3
-      !> Length and height of a brick: (2) [m]
-      real(wp) :: brick(2) = [0.25_wp, 0.1_wp]
-      !> Share by which sizes differ
-      real(wp) :: spread = 0.0_wp
-      !> Coefficient of friction
-      real(wp) :: friction = 0.6_wp
-      !> Restitution
-      real(wp) :: restitution = 0.0_wp
-      !> Length of a step [s]
-      real(wp) :: time_step = 2.0e-3_wp
-      !> End of the run [s]
-      real(wp) :: duration = 1.8_wp
-      !> Whether walls stand beside the floor
-      logical :: walls = .true.
+      integer :: columns = 5                    !! Bricks in a row
+      integer :: rows = 5                       !! Rows
+      integer :: seed = 20080301                !! Number that the places and turns are drawn with
+      integer :: n_dof = 3                      !! Unknowns of a block
+      real(wp) :: brick(2) = [0.25_wp, 0.1_wp]  !! Length and height of a brick: (2) [m]
+      real(wp) :: spread = 0.0_wp               !! Share by which sizes differ
+      real(wp) :: friction = 0.6_wp             !! Coefficient of friction
+      real(wp) :: restitution = 0.0_wp          !! Restitution
+      real(wp) :: time_step = 2.0e-3_wp         !! Length of a step [s]
+      real(wp) :: duration = 1.8_wp             !! End of the run [s]
+      logical :: walls = .true.                 !! Whether walls stand beside the floor
    end type pile_t
 
    !> What has been seen of a run
    type :: record_t
-      !> Where it is
-      type(march_t) :: march
-      !> One of verdict
-      integer :: verdict = 0
-      !> Why it cannot go on
-      character(len=:), allocatable :: reason
+      type(march_t) :: march                   !! Where it is
+      integer :: verdict = 0                   !! One of verdict
+      character(len=:), allocatable :: reason  !! Why it cannot go on
       !> Energy of the blocks without motion, if all fell to the level of the floor [J/m]
       real(wp) :: fall = 0.0_wp
-      !> Energy after the last step: kinetic, elastic and gravity [J/m]
-      real(wp) :: total = 0.0_wp
-      !> Largest rise of it in a step [J/m]
-      real(wp) :: rise = -huge(1.0_wp)
-      !> Largest energy of motion [J/m]
-      real(wp) :: peak = 0.0_wp
-      !> Deepest that a block has been in another after a step [m]
-      real(wp) :: entry = 0.0_wp
+      real(wp) :: total = 0.0_wp  !! Energy after the last step: kinetic, elastic and gravity [J/m]
+      real(wp) :: rise = -huge(1.0_wp)  !! Largest rise of it in a step [J/m]
+      real(wp) :: peak = 0.0_wp  !! Largest energy of motion [J/m]
+      real(wp) :: entry = 0.0_wp  !! Deepest that a block has been in another after a step [m]
       !> Farthest that a joint's force has been outside its cone, over the weight of all blocks
       real(wp) :: outside = 0.0_wp
-      !> Factorisations
-      integer :: factorisations = 0
+      integer :: factorisations = 0  !! Factorisations
    end type record_t
 
 contains
@@ -70,10 +51,8 @@ contains
    !> Go on by one step and see what has changed
    subroutine watch_step(scene, record, ended)
       type(scene_t), intent(inout) :: scene
-      !> What has been seen, new at the beginning
-      type(record_t), intent(inout) :: record
-      !> Whether the run is at its end or cannot go on
-      logical, intent(out) :: ended
+      type(record_t), intent(inout) :: record  !! What has been seen, new at the beginning
+      logical, intent(out) :: ended            !! Whether the run is at its end or cannot go on
       type(outcome_t) :: outcome
       type(album_t) :: album
 
@@ -107,10 +86,8 @@ contains
 
    !> Turned bricks in rows above a floor
    function pile_scene(pile) result(scene)
-      !> What is dropped
-      type(pile_t), intent(in) :: pile
-      !> The scene; the first blocks are the floor and the walls
-      type(scene_t) :: scene
+      type(pile_t), intent(in) :: pile  !! What is dropped
+      type(scene_t) :: scene            !! The scene; the first blocks are the floor and the walls
       type(model_t) :: model
       type(random_t) :: random
       real(wp) :: number(5), side(2), cell, width, height, beyond
@@ -154,8 +131,7 @@ contains
 
    !> Farthest that the force of a joint is outside its cone, in tension or in shear [N/m]
    pure real(wp) function farthest_outside(scene)
-      !> The scene after a step
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(in) :: scene  !! The scene after a step
       integer :: j
 
       farthest_outside = 0.0_wp
@@ -172,8 +148,7 @@ contains
    pure real(wp) function deepest_entry(first_vertex, vertex)
       !> First vertex of each block, and one beyond the last: (n_block + 1)
       integer, intent(in) :: first_vertex(:)
-      !> Corners, counter-clockwise: (2, n_vertex) [m]
-      real(wp), intent(in) :: vertex(:, :)
+      real(wp), intent(in) :: vertex(:, :)  !! Corners, counter-clockwise: (2, n_vertex) [m]
       real(wp) :: low(2, size(first_vertex) - 1), high(2, size(first_vertex) - 1)
       integer :: a, b
 
@@ -197,8 +172,7 @@ contains
    pure real(wp) function apart(one, other)
       !> Corners of the polygon with the edges, counter-clockwise: (2, n) [m]
       real(wp), intent(in) :: one(:, :)
-      !> Corners of the other: (2, m) [m]
-      real(wp), intent(in) :: other(:, :)
+      real(wp), intent(in) :: other(:, :)  !! Corners of the other: (2, m) [m]
       real(wp) :: edge(2), nearest
       integer :: i, k
 

@@ -20,12 +20,9 @@ contains
    !> Equations and state at the beginning of a step
    pure subroutine begin(scene, dt, equations, state)
       type(scene_t), intent(in) :: scene
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
-      !> The equations, blocks assembled
-      type(equations_t), intent(out) :: equations
-      !> The state, all joints as they are
-      type(step_state_t), intent(out) :: state
+      real(wp), intent(in) :: dt                   !! Length of the step [s]
+      type(equations_t), intent(out) :: equations  !! The equations, blocks assembled
+      type(step_state_t), intent(out) :: state     !! The state, all joints as they are
       integer :: n
 
       call new_equations(scene%system, scene%contacts%springs, scene%settings, equations)
@@ -44,8 +41,7 @@ contains
    !> A run of a scene at the beginning of a step
    pure subroutine begin_run(scene, dt, run)
       type(scene_t), intent(in) :: scene
-      !> Length of the step [s]
-      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: dt  !! Length of the step [s]
       type(run_t), intent(out) :: run
 
       run%settings = scene%settings
@@ -57,10 +53,8 @@ contains
 
    !> Largest trial force at the end of a step [N/m]
    pure real(wp) function largest_trial(springs, state)
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The solved step
-      type(step_state_t), intent(in) :: state
+      type(joint_springs_t), intent(in) :: springs  !! The springs of the joints
+      type(step_state_t), intent(in) :: state       !! The solved step
       integer :: j
 
       largest_trial = 0.0_wp
@@ -74,16 +68,11 @@ contains
    !> and for each joint the function of the trial force whose gradient is the admissible force,
    !> (trial**2 - (trial - force)**2)/2, over the penalty
    pure function energy(equations, springs, state, motion)
-      !> Blocks assembled
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> Trial forces at the beginning, bounds
-      type(step_state_t), intent(in) :: state
-      !> Any motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> The energy [J/m]
-      real(wp) :: energy
+      type(equations_t), intent(in) :: equations    !! Blocks assembled
+      type(joint_springs_t), intent(in) :: springs  !! The springs of the joints
+      type(step_state_t), intent(in) :: state       !! Trial forces at the beginning, bounds
+      real(wp), intent(in) :: motion(:, :)          !! Any motion: (n_dof, n_equation)
+      real(wp) :: energy                            !! The energy [J/m]
       real(wp) :: increment(3), force(3), trial(3)
       type(joint_face_t) :: face
       integer :: e, j, side
@@ -110,16 +99,11 @@ contains
 
    !> Loads, joint forces and resistance of each block, which should be zero
    pure function unbalance(equations, springs, motion, force) result(rest)
-      !> Blocks assembled
-      type(equations_t), intent(in) :: equations
-      !> The springs of the joints
-      type(joint_springs_t), intent(in) :: springs
-      !> The motion: (n_dof, n_equation)
-      real(wp), intent(in) :: motion(:, :)
-      !> Force of each joint: (3, n_joint)
-      real(wp), intent(in) :: force(:, :)
-      !> What is left: (n_dof, n_equation)
-      real(wp) :: rest(size(motion, 1), size(motion, 2))
+      type(equations_t), intent(in) :: equations          !! Blocks assembled
+      type(joint_springs_t), intent(in) :: springs        !! The springs of the joints
+      real(wp), intent(in) :: motion(:, :)                !! The motion: (n_dof, n_equation)
+      real(wp), intent(in) :: force(:, :)                 !! Force of each joint: (3, n_joint)
+      real(wp) :: rest(size(motion, 1), size(motion, 2))  !! What is left: (n_dof, n_equation)
       integer :: e, j, side
 
       rest = equations%load
@@ -137,12 +121,9 @@ contains
    !> Two courses of two blocks each on a fixed base, tilted; on them one block whose lower side has
    !> a step, so that two joints join it to one of them
    pure function wall(law, slope, n_dof) result(scene)
-      !> Law of all joints
-      type(joint_law_t), intent(in) :: law
-      !> By which all is turned [rad]
-      real(wp), intent(in) :: slope
-      !> Unknowns of a block
-      integer, intent(in) :: n_dof
+      type(joint_law_t), intent(in) :: law  !! Law of all joints
+      real(wp), intent(in) :: slope         !! By which all is turned [rad]
+      integer, intent(in) :: n_dof          !! Unknowns of a block
       !> The scene: base, lower left, lower right, upper left, upper right, top
       type(scene_t) :: scene
       type(model_t) :: model

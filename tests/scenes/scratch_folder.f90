@@ -9,8 +9,7 @@ contains
 
    !> Path of a file that a test writes
    function scratch(file) result(path)
-      !> Its name
-      character(len=*), intent(in) :: file
+      character(len=*), intent(in) :: file  !! Its name
       character(len=:), allocatable :: path
       integer :: n
 

@@ -13,8 +13,7 @@ import numpy as np
 
 from voussoir_benches.vtu_cells import cell_field
 
-#: Acceleration of gravity of the decks [m/s2]
-GRAVITY = 9.81
+GRAVITY = 9.81  #: Acceleration of gravity of the decks [m/s2]
 #: Default density and modulus of a deck [kg/m3, Pa]
 DENSITY, YOUNG = 2240.0, 5e9
 

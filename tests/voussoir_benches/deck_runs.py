@@ -16,13 +16,11 @@ from pathlib import Path
 from voussoir.dda_program import call, set_options
 from voussoir.files import read_text, write_text
 
-#: A row of results.csv: its columns as text
-Row = dict[str, str]
+Row = dict[str, str]  #: A row of results.csv: its columns as text
 #: A case that takes longer [s] is timed by the processor's time of its run, for other work on the
 #: machine adds to its wall time; reading and writing are nothing beside it
 LONG_CASE = 0.02
-#: A case that takes longer [s] is run once
-ONCE = 5.0
+ONCE = 5.0  #: A case that takes longer [s] is run once
 _NOT_A_NUMBER = re.compile(r"(?:^|,)[-+]?(?:nan|inf|infinity)(?:,|$)", re.IGNORECASE)
 
 

@@ -19,8 +19,7 @@ class Assembly:
     """Blocks that can move, their joints, and loads."""
 
     centre: np.ndarray  #: Centres of gravity: (blocks, 2) [m]
-    #: Forces and moments about the centres: (blocks, 3)
-    dead: np.ndarray
+    dead: np.ndarray  #: Forces and moments about the centres: (blocks, 3)
     live: np.ndarray
     ends: np.ndarray  #: Both ends of each joint: (joints, 2, 2) [m]
     pairs: np.ndarray  #: Places of its two blocks, -1 for one that is fixed: (joints, 2)

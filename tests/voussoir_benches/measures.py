@@ -10,10 +10,8 @@ import numpy as np
 from voussoir_benches.checks import DENSITY, GRAVITY, YOUNG, Outcome
 from voussoir_benches.exact import THROWN
 
-#: A quantity of an outcome
-Measure = Callable[[Outcome], float]
-#: Columns of energy.csv that are stored
-_STORED = ("kinetic", "elastic", "contact", "gravity")
+Measure = Callable[[Outcome], float]  #: A quantity of an outcome
+_STORED = ("kinetic", "elastic", "contact", "gravity")  #: Columns of energy.csv that are stored
 
 
 def result(column: str) -> Callable[[Outcome], float | str]:

@@ -10,12 +10,9 @@ from voussoir.deck.text import deck_text
 from voussoir_benches.checks import Check
 from voussoir_benches.expectations import Expectation, Measured
 
-#: Corners of a polygon [m]
-Corners = Sequence[tuple[float, float]]
-#: Name of the file of blocks beside a deck
-BLOCKS = "scene.blocks"
-#: Settings of a benchmark with blocks that move
-MOVED = ("analysis%geometry=current",)
+Corners = Sequence[tuple[float, float]]  #: Corners of a polygon [m]
+BLOCKS = "scene.blocks"  #: Name of the file of blocks beside a deck
+MOVED = ("analysis%geometry=current",)  #: Settings of a benchmark with blocks that move
 #: Both geometries, with the modulus that makes moving blocks nearly rigid [Pa]
 GEOMETRIES = (("reference", 5e9), ("current", 5e12))
 

@@ -18,8 +18,7 @@ from voussoir_benches.scene import Scene
 from voussoir_benches.stability_page import Line, headline, write_lines, write_markdown, write_page
 from voussoir_benches.stability_scenes import catalogue, random_scenes
 
-#: Results from good to bad
-_SEVERITY = (RIGHT, UNDECIDED, WRONG)
+_SEVERITY = (RIGHT, UNDECIDED, WRONG)  #: Results from good to bad
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

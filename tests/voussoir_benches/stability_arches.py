@@ -13,15 +13,11 @@ from voussoir_benches.expectations import Critical, Refused, Same, Verdict
 from voussoir_benches.scene import Scene
 from voussoir_benches.tables import rows
 
-#: Weight of a cubic metre of the decks' default masonry [N/m3]
-UNIT_WEIGHT = 2240.0 * 9.81
-#: Young's modulus with which moving blocks come near to rigid ones [Pa]
-NEARLY_RIGID = 5e12
-#: Friction angles from here on mean that nothing slides [deg]
-NO_SLIP_DEG = 89.9
+UNIT_WEIGHT = 2240.0 * 9.81  #: Weight of a cubic metre of the decks' default masonry [N/m3]
+NEARLY_RIGID = 5e12  #: Young's modulus with which moving blocks come near to rigid ones [Pa]
+NO_SLIP_DEG = 89.9  #: Friction angles from here on mean that nothing slides [deg]
 
-#: The arch of scenes that name none
-WHOLE = {"voussoirs": 36, "half_angle_deg": 90.0}
+WHOLE = {"voussoirs": 36, "half_angle_deg": 90.0}  #: The arch of scenes that name none
 
 
 def exact_thickness(arch: dict[str, Any], friction_deg: float = 50.0) -> float | None:

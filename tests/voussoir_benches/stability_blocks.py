@@ -11,12 +11,9 @@ from voussoir_benches.expectations import Measured
 from voussoir_benches.measures import closed_force, pull, relative_rise, support
 from voussoir_benches.scene import Corners, Scene, block_scene, rectangle, written_block
 
-#: Weight of a cubic metre of the decks that set it [N/m3]
-WEIGHT = 25000.0
-#: Material of blocks that press one another straight
-STIFF = {"unit_weight": WEIGHT, "poisson": 0.0}
-#: A base at height 0
-BASE = written_block(rectangle(-10.0, -1.0, 20.0, 1.0), "fixed")
+WEIGHT = 25000.0  #: Weight of a cubic metre of the decks that set it [N/m3]
+STIFF = {"unit_weight": WEIGHT, "poisson": 0.0}  #: Material of blocks that press one another straight
+BASE = written_block(rectangle(-10.0, -1.0, 20.0, 1.0), "fixed")  #: A base at height 0
 
 
 def tower(widths: Sequence[float], words: Sequence[str] = ()) -> str:

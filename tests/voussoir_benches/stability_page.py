@@ -52,8 +52,7 @@ class Kind:
     name: str  #: The kind
     count: Counter[str]  #: Scenes by their result
     worst: float | None  #: Largest relative error of those that are right; None where none is known
-    #: Times of one scene [s]
-    median: float
+    median: float  #: Times of one scene [s]
     longest: float
 
     def cells(self) -> list[str]:

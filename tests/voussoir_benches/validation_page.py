@@ -13,8 +13,7 @@ from voussoir_benches.validation_plot import diagonal, has_diagonal, has_history
 from voussoir_benches.validation_run import Line
 from voussoir_benches.validation_sketch import sketch
 
-#: Folder of the sketches beside the page
-SKETCHES = "images/verification"
+SKETCHES = "images/verification"  #: Folder of the sketches beside the page
 #: Heads of the entries of several decks, by the first of them
 HEADS = {
     "incline": "Blocks that slide down a slope",

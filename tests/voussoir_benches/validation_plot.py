@@ -11,10 +11,8 @@ from voussoir_benches.deck_runs import read_rows
 
 #: Size of a plot, its left, bottom and other margins [px]
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM, _MARGIN = 260.0, 200.0, 52.0, 34.0, 14.0
-#: Most points of a drawn curve
-_POINTS = 400
-#: Values that a plot of computed against exact values needs
-_LEAST = 3
+_POINTS = 400  #: Most points of a drawn curve
+_LEAST = 3  #: Values that a plot of computed against exact values needs
 _LINES = ('fill="none" stroke="#20508c" stroke-width="1.2"',
           'fill="none" stroke="#c4502a" stroke-width="1.2" stroke-dasharray="5 3"')
 _TEXT = 'font-family="sans-serif" font-size="10" fill="#333"'

@@ -21,16 +21,14 @@ from voussoir_benches.tables import rows
 from voussoir_benches.validation_plot import track_of
 from voussoir_benches.validation_sketch import Shape, shapes_of
 
-#: Errors below this are round-off: they have no rate
-ROUND_OFF = 1e-9
+ROUND_OFF = 1e-9  #: Errors below this are round-off: they have no rate
 
 
 @dataclass(frozen=True)
 class Line:
     """One line of the table."""
 
-    #: What was compared
-    scene: Scene
+    scene: Scene  #: What was compared
     check: Check
     computed: float | str  #: What the deck as it stands gave
     errors: tuple[float, ...]  #: Errors with the deck's own step, half of it, and so on

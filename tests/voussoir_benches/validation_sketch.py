@@ -12,12 +12,10 @@ from voussoir_benches.deck_runs import read_rows
 
 #: Width and largest height of a sketch [px]
 _WIDTH, _HEIGHT = 260.0, 200.0
-#: Margin around the movable blocks over their extent; fixed blocks beyond it are cut off
-_MARGIN = 0.2
+_MARGIN = 0.2  #: Margin around the movable blocks over their extent; fixed blocks beyond it are cut off
 #: Drawn displacement over the extent of the movable blocks, and the true one up to which it is drawn
 _DRAWN, _SMALL = 0.12, 0.1
-#: Displacement below which it is round-off, over the extent
-_ROUND_OFF = 1e-11
+_ROUND_OFF = 1e-11  #: Displacement below which it is round-off, over the extent
 _FIXED = 'fill="#b8b0a0" stroke="#444" stroke-width="0.8"'
 _FREE = 'fill="#efe8d8" stroke="#444" stroke-width="0.8"'
 _MOVED = 'fill="none" stroke="#c4502a" stroke-width="0.9" stroke-dasharray="3 2"'

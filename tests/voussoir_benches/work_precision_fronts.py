@@ -22,16 +22,14 @@ from voussoir_benches.limit_lp_blocks import Assembly, assembly_of, limit_factor
 from voussoir_benches.work_precision_motion import MOTION_METHODS, rocking
 from voussoir_benches.work_precision_runs import Arch, decide
 
-#: Weight per area of a deck's own material [N/m3]
-UNIT_WEIGHT = 2240.0 * 9.81
+UNIT_WEIGHT = 2240.0 * 9.81  #: Weight per area of a deck's own material [N/m3]
 
 
 @dataclass(frozen=True)
 class Point:
     """One run of one setting."""
 
-    #: What was run, and how
-    scene: str
+    scene: str  #: What was run, and how
     method: str
     setting: str
     error: float | None  #: Relative error; None where no answer was given
@@ -63,8 +61,7 @@ def front(points: list[Point]) -> list[Point]:
     return best
 
 
-#: Classes of scenes, in the order of their panels
-CLASSES = ("arch", "wall", "three rings", "moving arch", "motion")
+CLASSES = ("arch", "wall", "three rings", "moving arch", "motion")  #: Classes of scenes, in the order of their panels
 
 
 def panels(folder: Path, repeats: int, classes: Sequence[str] = CLASSES) -> Iterator[Panel]:

@@ -19,8 +19,7 @@ from voussoir_benches.scene import BLOCKS, Corners, rectangle, written_block
 from voussoir_benches.tables import rows
 from voussoir_benches.work_precision_scenes import ELASTIC, ORIGINAL, RIGID
 
-#: Length of a step over that of the longest
-SHARES = (1.0, 1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 16.0, 1.0 / 32.0)
+SHARES = (1.0, 1.0 / 2.0, 1.0 / 4.0, 1.0 / 8.0, 1.0 / 16.0, 1.0 / 32.0)  #: Length of a step over that of the longest
 #: Methods that are compared, and what their decks say
 MOTION_METHODS: dict[str, Groups] = {
     ELASTIC: {},
@@ -30,8 +29,7 @@ MOTION_METHODS: dict[str, Groups] = {
         "limerick": {"dynamic": True},
     },
 }
-#: Errors below this are rounding: they have no order
-ROUNDING = 1e-9
+ROUNDING = 1e-9  #: Errors below this are rounding: they have no order
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-#: Errors up to this are rounding: all digits are right
-ALL_DIGITS = 1e-14
-#: Smallest error that a logarithmic axis shows: below, digits are spent
-LEAST_ERROR = 1e-16
+ALL_DIGITS = 1e-14  #: Errors up to this are rounding: all digits are right
+LEAST_ERROR = 1e-16  #: Smallest error that a logarithmic axis shows: below, digits are spent
 #: Colour of words in the axes
 _QUIET = "#555555"
 #: Errors whose cost the tables have, and that of blocks that move

@@ -21,10 +21,8 @@ from voussoir_benches.scene import BLOCKS, Corners, written_block
 from voussoir_benches.work_precision_runs import FRICTION_DEG, Arch
 
 _PEAK = re.compile(r"VmHWM:\s+(\d+) kB")
-#: Thickness over the critical one of the arch that is decided
-THICKER = 1.05
-#: Tables that are left out where nothing else is said
-_BARE = {"joints": False, "blocks": False, "vtu": False}
+THICKER = 1.05  #: Thickness over the critical one of the arch that is decided
+_BARE = {"joints": False, "blocks": False, "vtu": False}  #: Tables that are left out where nothing else is said
 #: What is forced in, and the groups of a deck that do it; None: joints found among polygons
 PARTS: tuple[tuple[str, Groups | None], ...] = (
     ("nothing: the plan", {}),
@@ -36,8 +34,7 @@ PARTS: tuple[tuple[str, Groups | None], ...] = (
     ("joints searched among polygons", None),
     ("blocks that move, contacts that follow", {"analysis": {"geometry": "current"}}),
 )
-#: Blocks that move are left out beyond this number of voussoirs: they take minutes
-MOST_MOVING = 100
+MOST_MOVING = 100  #: Blocks that move are left out beyond this number of voussoirs: they take minutes
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,8 @@ from voussoir import theory
 from voussoir_benches import limit_lp
 from voussoir_benches.deck_runs import run_deck
 
-#: Friction angle of all joints [deg]: enough for a rotational collapse at every half angle here
-FRICTION_DEG = 60.0
-#: Distances from critical at which decisions are timed
-DISTANCES = (-1e-3, -1e-5, 1e-5, 1e-3)
+FRICTION_DEG = 60.0  #: Friction angle of all joints [deg]: enough for a rotational collapse at every half angle here
+DISTANCES = (-1e-3, -1e-5, 1e-5, 1e-3)  #: Distances from critical at which decisions are timed
 
 
 @dataclass(frozen=True)
@@ -54,10 +52,8 @@ class Race:
     decision: float  #: One decision of dda, its arch built within
     right: int  #: Decisions of dda that came out right, of four
     search: float  #: One search of dda to 1e-8
-    #: One decision of the linear programs, built and solved; None without scipy
-    general: float | None
-    #: Their decisions that came out right, of four
-    general_right: int
+    general: float | None  #: One decision of the linear programs, built and solved; None without scipy
+    general_right: int  #: Their decisions that came out right, of four
     compact: float | None
     compact_right: int
 

@@ -10,8 +10,7 @@ from typing import Any
 from voussoir_benches.scene import BLOCKS, Corners, rectangle, written_block, written_blocks
 from voussoir_benches.stability_blocks import wall as half_bond
 
-#: Names of the methods, as legends have them; where each stands is a panel's affair
-RIGID = "DDA, rigid blocks"
+RIGID = "DDA, rigid blocks"  #: Names of the methods, as legends have them; where each stands is a panel's affair
 ELASTIC = "DDA, elastic blocks"
 COULOMB = "DDA, Coulomb friction"
 ASSOCIATED = "DDA, associated limit"
@@ -21,8 +20,7 @@ INTERIOR = "HiGHS, interior point (associated)"
 #: Tolerances of searches by dda, and of the original's
 _FINE = tuple({"search": {"tolerance": 10.0**-k}} for k in (1, 2, 4, 6, 8, 10, 12))
 _COARSE = tuple({"search": {"tolerance": 10.0**-k}} for k in (1, 2, 3))
-#: Tolerances of HiGHS: it takes none below 1e-10
-HIGHS_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-10)
+HIGHS_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-10)  #: Tolerances of HiGHS: it takes none below 1e-10
 
 Settings = tuple[Mapping[str, Any], ...]
 
