@@ -46,7 +46,7 @@ contains
    end subroutine lay_out_joints
 
    !> Assemble the matrix and factor it
-   pure subroutine factor_joints(base, block, row, stiffness, joined)
+   pure subroutine factor_joints(base, block, row, stiffness, joined, changed)
       !> Matrix of each block without springs: (n_dof, n_dof, n_block)
       real(wp), intent(in), contiguous :: base(:, :, :)
       integer, intent(in) :: block(:, :)
@@ -55,6 +55,9 @@ contains
       !> Stiffness of the joints, rows N1, N2, T, columns opening 1, 2 and slip: (3, 3, n_joint)
       real(wp), intent(in), contiguous :: stiffness(:, :, :)
       type(joint_matrix_t), intent(inout) :: joined
+      !> Blocks with a joint whose stiffness has changed since the last factor; all if it is not
+      !> given: (n_block)
+      logical, intent(in), optional :: changed(:)
       integer :: j
 
       joined%matrix%diagonal = base
@@ -64,7 +67,7 @@ contains
          call add_stiffness(size(base, 1), block(:, j), row(:, :, :, j), stiffness(:, :, j), &
             & joined%entry(j), joined%matrix)
       end do
-      call factorise(joined%matrix, joined%factor)
+      call factorise(joined%matrix, joined%factor, changed)
       joined%n_factorisation = joined%n_factorisation + 1
    end subroutine factor_joints
 

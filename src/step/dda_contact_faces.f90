@@ -26,25 +26,25 @@ contains
 
    !> Find forces that agree with their faces, from those at hand if these are near; better ones are
    !> kept
-   pure subroutine settle_faces(p, tolerance, near, before, force, residual, passes)
+   pure subroutine settle_faces(p, tolerance, near, before, springs, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Openings against the law that are left [m]
       real(wp), intent(in) :: near            !! Residual of forces that are near [m]
       real(wp), intent(in) :: before(:, :)    !! Forces of the last step: (3, n_joint) [N/m]
+      type(joint_matrix_t), intent(inout) :: springs  !! Laid out for the joints, or empty
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(joint_matrix_t) :: springs
       type(joint_face_t) :: face(size(p%joint))
       real(wp), dimension(3, size(p%joint)) :: centre, now
-      real(wp) :: stiff(3, 3, size(p%joint))
+      real(wp), dimension(3, 3, size(p%joint)) :: held, stiff
       real(wp) :: motion(size(p%load, 1), size(p%load, 2)), left
-      integer :: changes, last, pass, turn
-      logical :: stale
+      integer :: changes, i, last, pass, turn
+      logical :: stale, changed(0:size(p%load, 2))
 
       if (residual%opening <= tolerance .or. residual%opening > near) return
-      call lay_out_joints(p%block, size(p%load, 1), size(p%load, 2), .false., springs%matrix, &
-         & springs%factor, springs%entry)
+      if (.not. allocated(springs%entry)) call lay_out_joints(p%block, size(p%load, 1), &
+         & size(p%load, 2), .false., springs%matrix, springs%factor, springs%entry)
       now = force
       centre = before
       motion = move_blocks(p, now)
@@ -59,7 +59,13 @@ contains
             pass = pass + 1
             passes = passes + 1
             call set_springs(p, face, stiff)
-            call factor_joints(p%base, p%block, p%row, stiff, springs)
+            changed = pass == 1
+            do i = 1, merge(0, size(face), pass == 1)
+               if (any(abs(stiff(:, :, i) - held(:, :, i)) > 0.0_wp)) &
+                  & changed(p%block(:, i)) = .true.
+            end do
+            held = stiff
+            call factor_joints(p%base, p%block, p%row, stiff, springs, changed(1:))
             if (.not. springs%factor%usable) return
          end if
          call take_faces(p, face, now)

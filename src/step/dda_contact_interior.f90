@@ -48,15 +48,15 @@ contains
 
    !> Find forces from those at hand. Of Coulomb's law those of smallest residual count. Those of
    !> the convex problem replace them, however far they are from the law: they add no energy
-   pure subroutine solve_interior(p, tolerance, is_convex, force, residual, passes)
+   pure subroutine solve_interior(p, tolerance, is_convex, matrix, force, residual, passes)
       type(contact_problem_t), intent(in) :: p
       real(wp), intent(in) :: tolerance       !! Permitted residual, as an opening [m]
       logical, intent(in) :: is_convex        !! True for the convex problem
+      type(joint_matrix_t), intent(inout) :: matrix  !! Laid out for the joints, or empty
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
       type(coulomb_problem_t) :: q
-      type(joint_matrix_t) :: matrix
       type(coulomb_lack_t) :: lack
       type(coulomb_iterate_t) :: x
       type(residual_t) :: found
@@ -65,8 +65,8 @@ contains
       logical :: is_better, may_restart
 
       q = interior_problem(p, is_convex, force)
-      call lay_out_joints(q%block, size(q%load, 1), size(q%load, 2), .false., matrix%matrix, &
-         & matrix%factor, matrix%entry)
+      if (.not. allocated(matrix%entry)) call lay_out_joints(p%block, size(p%load, 1), &
+         & size(p%load, 2), .false., matrix%matrix, matrix%factor, matrix%entry)
       call begin(p, q, force, merge(convex_lift, near, is_convex), x)
       least = huge(least)
       length = 1.0_wp

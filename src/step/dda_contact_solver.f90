@@ -16,6 +16,7 @@ module dda_contact_solver
    use dda_contact_sweeps, only : sweep_joints
    use dda_contact_types, only : joint_springs_t
    use dda_friction_cone, only : cone_t, joint_face_t, shear_bound
+   use dda_joint_matrix, only : joint_matrix_t
    use dda_kinds, only : wp
    use dda_small_systems, only : cholesky, solved
    use dda_sort, only : list_by_owner
@@ -101,6 +102,7 @@ contains
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(out) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations
+      type(joint_matrix_t) :: matrix
       real(wp) :: before(3, size(p%joint)), enough, exact, near, speed, tolerance
 
       before = force
@@ -111,17 +113,17 @@ contains
       near = near_solution*speed
       exact = merge(rounding_tolerance, 1.0_wp, size(p%joint) <= small_group_joints)*tolerance
       ! sweeps let the first of redundant joints take all
-      call settle_faces(p, exact, near, before, force, residual, passes)
+      call settle_faces(p, exact, near, before, matrix, force, residual, passes)
       call sweep_joints(p, exact, first_sweeps, force, residual)
-      call settle_faces(p, exact, near, before, force, residual, passes)
+      call settle_faces(p, exact, near, before, matrix, force, residual, passes)
       if (residual%opening > enough) &
-         & call solve_interior(p, enough, .false., force, residual, passes)
+         & call solve_interior(p, enough, .false., matrix, force, residual, passes)
       if (residual%opening > near) &
-         & call solve_interior(p, convex_tolerance*speed, .true., force, residual, passes)
+         & call solve_interior(p, convex_tolerance*speed, .true., matrix, force, residual, passes)
       call sweep_joints(p, tolerance, last_sweeps, force, residual)
-      call settle_faces(p, exact, near, before, force, residual, passes)
+      call settle_faces(p, exact, near, before, matrix, force, residual, passes)
       if (work_of(p, force) > max_energy_gain*sum(p%load*move_blocks(p, 0.0_wp*force))/2.0_wp) &
-         & call solve_interior(p, enough, .true., force, residual, passes)
+         & call solve_interior(p, enough, .true., matrix, force, residual, passes)
    end subroutine settle_group
 
    !> Work of contact forces on openings and slip: negative under Coulomb's law [J/m]
