@@ -21,7 +21,7 @@ FOUND = [("elastic_row", 8128002), ("elastic_row", 9119004), ("elastic_row", 101
          ("spin_rough_gravity", 8100002), ("spin_rough_gravity", 9620021), ("spin_smooth_gravity", 9830002),
          ("flight", 50), ("flight", 73), ("flight", 86), ("polygons_meet", 12500002),
          ("polygons_meet", 47150003), ("polygons_meet", 48000042), ("polygons_meet", 48000081),
-         ("polygons_meet", 13700016)]
+         ("polygons_meet", 13700016), ("polygons_meet", 15600007)]
 #: Seeds whose corners roll, some onto an edge
 ROLLING = [("polygons_meet", 13700016), ("polygons_meet", 48000042), ("spin_rough_gravity", 9620021)]
 DEPENDED = [("touching_row", 2711000)]  #: Seeds whose answers depended on the step or the unknowns

@@ -198,3 +198,13 @@ def test_slab_on_a_smooth_one_stays_where_it_is() -> None:
     slabs = Stack(np.array([700.0, 500.0]), np.array([0.9, 0.0]), np.zeros(2), np.zeros(2))
     slabs.follow([(0.0, 0.0), (0.5, 3.0)])
     assert slabs.place == pytest.approx(np.array([0.0, -3.0 / 0.5 * 0.5**3 / 6.0]), abs=1e-12)
+
+
+def test_corners_that_clip_one_another_within_a_step_meet() -> None:
+    """A diamond at 10 m/s overlaps the corners of a narrow block for 2.2 ms from 8.5 ms on, 1 mm deep."""
+    world = World((0.0, 0.0), restitution=1.0)
+    world.add([(0.0, -1.0), (0.02, -1.0), (0.02, 0.0), (0.0, 0.0)], density=0.0)
+    diamond = [(x - 0.086, y + 0.499) for x, y in ((0.0, -0.5), (0.5, 0.0), (0.0, 0.5), (-0.5, 0.0))]
+    world.add(diamond, (10.0, 0.0, 0.0))
+    world.run(0.02)
+    assert world.impacts[0] == pytest.approx((0.0085, 10.0 / math.sqrt(2.0)), rel=1e-6)
