@@ -17,6 +17,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -254,30 +255,35 @@ def check(dda: str, folder: Path, bridge: Bridge) -> tuple[str, list[str]]:
     return worst["verdict"], faults
 
 
-def main() -> int:
-    """Check bridges, and print what contradicts them."""
-    parser = argparse.ArgumentParser(description=__doc__)
+def check_seed(dda: str, folder: Path, seed: int) -> tuple[str, list[str]]:
+    """Verdict of a random bridge at its worst position, and its faults with its deck."""
+    bridge = random_bridge(seed)
+    try:
+        verdict, faults = check(dda, folder, bridge)
+    except TimeoutError as problem:
+        verdict, faults = "slow", [str(problem)]
+    return verdict, [f"{len(faults)} contradictions: {faults[0]}\n{bridge.deck('worst = .true.')}"] if faults else []
+
+
+def campaign(description: str | None, count: int, judge: Callable[[str, Path, int], tuple[str, list[str]]]) -> int:
+    """Judge the bridges of a command line, and print their faults; 1 if there are any."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--dda", required=True, type=os.path.abspath)
-    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--count", type=int, default=count)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     verdicts: dict[str, int] = {}
     wrong = 0
     for seed in range(arguments.seed, arguments.seed + arguments.count):
         with tempfile.TemporaryDirectory() as folder:
-            bridge = random_bridge(seed)
-            try:
-                verdict, faults = check(arguments.dda, Path(folder), bridge)
-            except TimeoutError as problem:
-                verdict, faults = "slow", [str(problem)]
+            verdict, faults = judge(arguments.dda, Path(folder), seed)
         verdicts[verdict or "refused"] = verdicts.get(verdict or "refused", 0) + 1
         if faults:
             wrong += 1
-            print(f"seed {seed}: {len(faults)} contradictions: {faults[0]}", bridge.deck("worst = .true."), sep="\n",
-                  flush=True)
-    print(f"{wrong} of {arguments.count} bridges are contradicted; worst positions: {verdicts}")
+            print(f"seed {seed}: {'; '.join(faults)}", flush=True)
+    print(f"{wrong} of {arguments.count} bridges have faults; verdicts: {verdicts}")
     return 1 if wrong else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaign(__doc__, 200, check_seed))

@@ -261,7 +261,6 @@ def test_a_path_ends_at_the_load_that_its_joints_tend_to(tmp_path: Path) -> None
     bridge, place = crushing_bridge(985140)
     (row,) = rows(tmp_path, bridge.deck(f"position = {place}"), head="")
     assert row["verdict"] == "found"
-    assert float(row["critical"]) < float(row["exact_low"]) * (1.0 - 1e-5)
     assert float(row["critical_high"]) == pytest.approx(float(row["exact_low"]), rel=1e-9)
 
 
@@ -275,5 +274,5 @@ def test_other_steps_find_values_within_the_bracket_of_a_jump(tmp_path: Path) ->
 @pytest.mark.parametrize("seed", [985039, 985085, 985101, 986512, 986619])
 def test_bridges_lie_between_their_bounds_and_are_like_their_mirror_images(tmp_path: Path, seed: int) -> None:
     """One ring to four that slide and crush; `python3 crushing_bridges.py` checks any number of them."""
-    verdict, _, faults = check_bridge(DDA, tmp_path, seed)
+    verdict, faults = check_bridge(DDA, tmp_path, seed)
     assert faults == [] and verdict in ("found", "collapsed")
