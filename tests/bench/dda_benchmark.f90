@@ -49,7 +49,7 @@ module dda_benchmark
       real(wp) :: ratio = 0.0_wp
       integer :: right = 0                 !! Decisions that came out right, of four
       real(wp) :: factorisations = 0.0_wp  !! Mean number of factorisations of a decision
-      type(critical_t) :: critical         !! What the search found and counted
+      type(critical_t) :: critical         !! Result and counts of the search
       real(wp) :: error = 0.0_wp           !! Relative error of the middle of its bracket
       !> Shares of setting up, assembly, factor and solve, judging and the rest in a decision's time
       real(wp) :: share(4) = 0.0_wp
@@ -70,7 +70,7 @@ module dda_benchmark
    !> A critical search
    type, extends(job_t) :: search_job_t
       type(equal_arches_t) :: family  !! The arches
-      type(critical_t) :: critical    !! What it found in the last run
+      type(critical_t) :: critical    !! Result of the last run
    contains
       !> Search
       procedure :: run => run_search

@@ -74,7 +74,7 @@ contains
    subroutine print_row(cells, markdown, head)
       character(len=*), intent(in) :: cells(:)  !! Text of each column: (:)
       logical, intent(in) :: markdown           !! Markdown instead of plain text
-      logical, intent(in) :: head               !! Whether a rule follows
+      logical, intent(in) :: head               !! True if a rule follows
       integer :: i
 
       if (markdown) then

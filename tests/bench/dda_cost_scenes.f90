@@ -26,8 +26,8 @@ contains
       integer, intent(in) :: courses  !! Courses
       !> Bricks in every other course; in between one more, the outer two of half the length
       integer, intent(in) :: columns
-      logical, intent(in) :: dynamic  !! Whether velocities are kept
-      logical, intent(in) :: current  !! Whether blocks move
+      logical, intent(in) :: dynamic  !! True if velocities are kept
+      logical, intent(in) :: current  !! True if blocks move
       type(scene_t), intent(out) :: scene
       type(block_plan_t) :: plan
       real(wp) :: left, right
@@ -53,7 +53,7 @@ contains
    !> Blocks a little turned and apart, one above the other, that fall upon one another
    subroutine loose_blocks(columns, dynamic, scene)
       integer, intent(in) :: columns  !! Columns of blocks, and their number in each
-      logical, intent(in) :: dynamic  !! Whether velocities are kept
+      logical, intent(in) :: dynamic  !! True if velocities are kept
       type(scene_t), intent(out) :: scene
       type(block_plan_t) :: plan
       real(wp) :: pitch(2), shift
@@ -110,8 +110,8 @@ contains
    !> The scene of a plan
    subroutine make_scene(plan, dynamic, current, scene)
       type(block_plan_t), intent(in) :: plan
-      logical, intent(in) :: dynamic  !! Whether velocities are kept
-      logical, intent(in) :: current  !! Whether blocks move
+      logical, intent(in) :: dynamic  !! True if velocities are kept
+      logical, intent(in) :: current  !! True if blocks move
       type(scene_t), intent(out) :: scene
       type(base_t) :: base
 

@@ -26,8 +26,8 @@ module dda_step_benchmark
       character(len=24) :: name = ""  !! Name of the scene
       !> Courses and bricks in a course; without courses as many loose blocks in square
       integer :: size(2) = 0
-      logical :: dynamic = .false.  !! Whether velocities are kept
-      logical :: current = .false.  !! Whether blocks move
+      logical :: dynamic = .false.  !! True if velocities are kept
+      logical :: current = .false.  !! True if blocks move
       !> Steps before those that are timed, and steps that are timed, which may be none: (2)
       integer :: steps(2) = [0, 1]
    end type step_case_t

@@ -33,7 +33,7 @@ contains
       !> Loads at factor zero, what a factor of one adds: (3, n_block)
       real(wp), allocatable, intent(out) :: dead(:, :), live(:, :)
       character(*), intent(out) :: name  !! Its name
-      logical, intent(out) :: ended      !! Whether there is none
+      logical, intent(out) :: ended      !! True if there is none
       integer :: b, j, n_block, n_joint, status
 
       read (*, *, iostat=status) n_block, n_joint, name

@@ -60,7 +60,7 @@ contains
    subroutine read_options(sizes, unknowns, markdown, error)
       integer, allocatable, intent(out) :: sizes(:)     !! Numbers of voussoirs, rising: (n)
       integer, allocatable, intent(out) :: unknowns(:)  !! Unknowns of a block: 3, 6, or both
-      logical, intent(out) :: markdown                  !! Whether the tables are wanted in Markdown
+      logical, intent(out) :: markdown                  !! True if the tables are wanted in Markdown
       type(error_t), allocatable, intent(out) :: error  !! Allocated if an option is not understood
       character(len=200) :: argument
       integer :: k

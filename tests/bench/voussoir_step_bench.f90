@@ -138,7 +138,7 @@ contains
 
    !> Read the options
    subroutine read_options(markdown, largest, only)
-      logical, intent(out) :: markdown       !! Whether the table is wanted in Markdown
+      logical, intent(out) :: markdown       !! True if the table is wanted in Markdown
       integer, intent(out) :: largest        !! Most blocks
       character(len=*), intent(out) :: only  !! Part of the names of the scenes that are measured
       character(len=200) :: argument

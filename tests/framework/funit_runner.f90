@@ -137,7 +137,7 @@ contains
 
    !> Write the closing line; a failure stops the program with code 2
    subroutine close_report(tally)
-      type(tally_t), intent(in) :: tally  !! What has been run
+      type(tally_t), intent(in) :: tally  !! Counts of the tests
 
       if (tally%n_test == 0) then
          write (output_unit, "(a)") &

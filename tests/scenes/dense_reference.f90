@@ -95,7 +95,7 @@ contains
       integer, intent(in) :: n_block  !! Number of blocks
       integer, intent(in) :: pair(:, :)  !! Coupled blocks: (2, n_entry)
       real(wp), intent(in) :: friction  !! How far a spring is from a symmetric one; 0 is symmetric
-      logical, intent(in) :: symmetric  !! Whether the matrix is laid out as a symmetric one
+      logical, intent(in) :: symmetric  !! True if the matrix is laid out as a symmetric one
       type(block_matrix_t), intent(out) :: matrix
       real(wp) :: a(3, n_dof), b(3, n_dof), spring(3, 3), skew(3)
       integer :: c, e, i

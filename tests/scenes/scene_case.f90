@@ -34,7 +34,7 @@ module scene_case
       integer :: pictures = 0                !! Number of its pictures
       !> How far corners have gone in the last of them: (2, n_vertex) [m]
       real(wp), allocatable :: seen(:, :)
-      logical, allocatable :: absent(:)  !! Whether blocks are taken away: (n_block)
+      logical, allocatable :: absent(:)  !! True if blocks are taken away: (n_block)
    end type told_t
 
 contains

@@ -27,7 +27,7 @@ module scene_pile
       real(wp) :: restitution = 0.0_wp          !! Restitution
       real(wp) :: time_step = 2.0e-3_wp         !! Length of a step [s]
       real(wp) :: duration = 1.8_wp             !! End of the run [s]
-      logical :: walls = .true.                 !! Whether walls stand beside the floor
+      logical :: walls = .true.                 !! True if walls stand beside the floor
    end type pile_t
 
    !> What has been seen of a run
@@ -52,7 +52,7 @@ contains
    subroutine watch_step(scene, record, ended)
       type(scene_t), intent(inout) :: scene
       type(record_t), intent(inout) :: record  !! What has been seen, new at the beginning
-      logical, intent(out) :: ended            !! Whether the run is at its end or cannot go on
+      logical, intent(out) :: ended            !! True if the run is at its end or cannot go on
       type(outcome_t) :: outcome
       type(album_t) :: album
 
@@ -86,7 +86,7 @@ contains
 
    !> Turned bricks in rows above a floor
    function pile_scene(pile) result(scene)
-      type(pile_t), intent(in) :: pile  !! What is dropped
+      type(pile_t), intent(in) :: pile  !! Pile that is dropped
       type(scene_t) :: scene            !! The scene; the first blocks are the floor and the walls
       type(model_t) :: model
       type(random_t) :: random

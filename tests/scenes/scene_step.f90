@@ -103,7 +103,7 @@ contains
       type(joint_springs_t), intent(in) :: springs        !! The springs of the joints
       real(wp), intent(in) :: motion(:, :)                !! The motion: (n_dof, n_equation)
       real(wp), intent(in) :: force(:, :)                 !! Force of each joint: (3, n_joint)
-      real(wp) :: rest(size(motion, 1), size(motion, 2))  !! What is left: (n_dof, n_equation)
+      real(wp) :: rest(size(motion, 1), size(motion, 2))  !! Residual forces: (n_dof, n_equation)
       integer :: e, j, side
 
       rest = equations%load

@@ -16,7 +16,7 @@ contains
    subroutine set_stiffness(graph, n_dof, symmetric, matrix)
       type(joint_graph_t), intent(in) :: graph     !! The joints
       integer, intent(in) :: n_dof                 !! Unknowns of a block, at least 3
-      logical, intent(in) :: symmetric             !! Whether the matrix is
+      logical, intent(in) :: symmetric             !! True if the matrix is
       type(block_matrix_t), intent(out) :: matrix
       integer :: c, e, j
       real(wp) :: spring(3, 3), a(n_dof, 3), b(n_dof, 3)
