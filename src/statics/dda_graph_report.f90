@@ -7,7 +7,7 @@ module dda_graph_report
    use dda_contacts, only : begin_forces, contacts_t, joint_place
    use dda_coulomb_law, only : coulomb_state_t, face
    use dda_deformation, only : displacement_matrix
-   use dda_joint_graph, only : joint_graph_t, joint_motion
+   use dda_joint_graph, only : breaks, joint_graph_t, joint_motion, rubs
    use dda_kinds, only : wp
    use dda_load_stations, only : last_history_time
    use dda_material, only : elasticity_matrix
@@ -72,11 +72,21 @@ contains
             & contacts%face(j)%slip = merge(-1, 1, rate(3, j) > 0.0_wp)
          contacts%gap(:, j) = merge(rate(:, j), 0.0_wp, [contacts%face(j)%open, &
             & contacts%face(j)%slip /= 0])
-         ! interior points leave a trace of force there
+         ! interior points leave a trace of force there, and its friction
          where (contacts%face(j)%open) contacts%force(1:2, j) = pressed
+         if (any(contacts%face(j)%open) .and. rubs(graph%kind(j), graph%friction(j)) &
+            & .and. .not. breaks(graph)) call limit_shear(graph%friction(j), contacts%force(:, j))
          if (all(contacts%face(j)%open)) contacts%force(:, j) = 0.0_wp
       end do
    end subroutine show_mechanism
+
+   !> Reduce a shear force to what the normal forces let friction carry
+   pure subroutine limit_shear(friction, force)
+      real(wp), intent(in) :: friction     !! Coefficient of friction
+      real(wp), intent(inout) :: force(3)  !! N1, N2, T [N/m]
+
+      force(3) = sign(min(abs(force(3)), friction*(force(1) + force(2))), force(3))
+   end subroutine limit_shear
 
    !> Forces, openings and faces of the joints of what stands, and motion and strain of its blocks
    pure subroutine show_state(settings, verdict, system, contacts)

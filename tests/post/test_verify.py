@@ -220,6 +220,28 @@ def test_random_bridges_of_all_keys_are_accepted(
     assert main(["verify", str(tmp_path / "x")]) == 0, capsys.readouterr().out
 
 
+#: A bridge of three rings that slides as it falls
+FALLING_RINGS = """&arch shape = 'segmental', span = 2.341, voussoirs = 18, rise = 0.4865, thickness = 0.1717,
+    rings = 3, spans = 3, pier_width = 0.6641, pier_height = 1.102, springing = 'no-slip' /
+&joint friction_deg = 45.0 /
+&material unit_weight = 23840.0, compressive_strength = 13520000.0 /
+&vehicle axles = 18390.0, 102700.0, 33550.0, 87160.0, spacings = 0.704, 1.097, 0.4409, length = 0.3,
+    position = 0.6958 /
+&load load_factor = 0.2198 /
+&analysis flow = 'coulomb' /
+"""
+
+
+def test_what_slides_as_it_falls_has_the_friction_of_the_corner_that_presses(tmp_path: Path) -> None:
+    """At a hinge that slides the shear force is that of the one normal force, to rounding."""
+    folder = run_deck(tmp_path, FALLING_RINGS)
+    with (folder / "joints.csv").open() as lines:
+        rows = [row for row in csv.DictReader(lines) if row["state"] == "sliding" and "hinge" in row["mechanism"]]
+    assert len(rows) > 10
+    for row in rows:
+        assert abs(float(row["shear_force"])) <= float(row["normal_force"]) * (1 + 1e-12)
+
+
 def test_stages_that_were_left_out_are_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = run_deck(tmp_path, HEAD, PILLARS + "remove block 3 at 1\nremove block 4 at 2\n")
     results = (folder / "results.csv").read_text()
