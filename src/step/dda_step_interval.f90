@@ -36,8 +36,8 @@ module dda_step_interval
    real(wp), parameter :: aim = 0.8_wp
    !> Factor of a step without convergence
    real(wp), parameter :: cut = 0.3_wp
-   !> Penetration by residual forces over the size of the smallest block
-   real(wp), parameter :: deepest = 1.0e-4_wp
+   !> Entry of a step over the size of the smallest block: each is kept, and a few add up to 1e-4
+   real(wp), parameter :: deepest = 2.0e-5_wp
    !> Motion over the permitted one above which a step is rejected
    real(wp), parameter :: too_far = 2.0_wp
    !> The same on a loading path

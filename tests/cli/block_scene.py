@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from pathlib import Path
 
@@ -46,3 +47,34 @@ def bar_forces(folder: Path) -> list[float]:
     rows = rows_of(folder / "out" / "bars.csv")
     last = rows[-1]["time"]
     return [float(row["force"]) for row in rows if row["time"] == last]
+
+
+def depth_of(first: list[Point], second: list[Point]) -> float:
+    """How far two convex polygons have entered one another, along the face that parts them soonest; 0 if they have not.
+
+    Separating axes: no face of either has all corners of the other in front of it.
+    """
+    depth = math.inf
+    for polygon in (first, second):
+        for (x, y), (u, v) in zip(polygon, polygon[1:] + polygon[:1]):
+            size = math.hypot(u - x, v - y)
+            one, other = ([((v - y) * (a - x) - (u - x) * (b - y)) / size for a, b in corners]
+                          for corners in (first, second))
+            depth = min(depth, max(one) - min(other), max(other) - min(one))
+    return max(0.0, depth)
+
+
+def deepest_entry(folder: Path) -> float:
+    """Deepest entry of two convex blocks over the root of the smaller area, of all frames of a run."""
+    frames: dict[str, dict[str, list[Point]]] = {}
+    for row in rows_of(folder / "frames.csv"):
+        frames.setdefault(row["frame"], {}).setdefault(row["block"], []).append((float(row["x"]), float(row["y"])))
+    deepest = 0.0
+    for frame in frames.values():
+        blocks = sorted(frame.values(), key=lambda corners: min(x for x, _ in corners))
+        reach = [max(x for x, _ in corners) for corners in blocks]
+        size = [math.sqrt(abs(sum(x * v - u * y for (x, y), (u, v) in zip(c, c[1:] + c[:1]))) / 2.0) for c in blocks]
+        for i, first in enumerate(blocks):
+            later = itertools.takewhile(lambda k: min(x for x, _ in blocks[k]) < reach[i], range(i + 1, len(blocks)))
+            deepest = max([deepest, *(depth_of(first, blocks[k]) / min(size[i], size[k]) for k in later)])
+    return deepest

@@ -83,5 +83,5 @@ def moving_wall(seed: int) -> MovingWall:
         text, f"&joint friction_deg = {pick.choice([10.0, 25.0, 35.0, 45.0, 60.0])!r}{mortar} /\n"
         f"&analysis mode = 'dynamic', geometry = 'current', unknowns = {pick.choice([3, 3, 6])}, "
         f"restitution = {pick.choice([0.0, 0.0, 0.0, 0.3])!r}, time_step = {step!r}, duration = {60.0 * step!r}, "
-        "steps = 1000000 /\n&output energy = .true., joints = .false. /\n", begun,
+        "steps = 1000000 /\n&output energy = .true., joints = .false., frames = 10 /\n", begun,
         DENSITY * length * top * (G * step) ** 2 / 2.0)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 from assembly import area_and_centre  # noqa: E402
+from block_scene import deepest_entry
 from moving_walls import moving_wall  # noqa: E402
 from random_assemblies import shape  # noqa: E402
 
@@ -321,7 +322,10 @@ def check_energy(bench: Bench, seed: int) -> None:
 
 
 def check_motion(bench: Bench, seed: int) -> None:
-    """Walls of many bricks that are hit, shaken and held move to the end, and no step adds to what they hold."""
+    """Walls of many bricks that are hit, shaken and held move to the end, and no step adds to what they hold.
+
+    No brick enters another by more than 1e-4 of its size.
+    """
     wall = moving_wall(seed)
     (bench.folder / "x.blocks").write_text(wall.blocks)
     (bench.folder / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + wall.keys)
@@ -332,6 +336,8 @@ def check_motion(bench: Bench, seed: int) -> None:
     most = max(row["kinetic"] for row in rows) + wall.fall
     for row, before, after in zip(rows, [wall.begun, *held], held):
         demand(after <= before + 1e-4 * most, f"energy rises by {after - before!r} of {most!r} at {row['time']!r} s")
+    depth = deepest_entry(bench.folder / "x")
+    demand(depth <= 1e-4, f"bricks enter by {depth!r} of their size")
 
 
 def check_deck(bench: Bench, seed: int) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from pathlib import Path
 
 import pytest
-from block_scene import Point, block, rows_of, run_blocks, turned
+from block_scene import Point, block, deepest_entry, rows_of, run_blocks, turned
 from dda_command import run_deck
 
 
@@ -57,3 +58,17 @@ def test_corners_that_hit_one_after_another_keep_the_energy(tmp_path: Path, tilt
         "--quiet")
     kinetic = [float(row["kinetic"]) for row in rows_of(tmp_path / "x" / "energy.csv")]
     assert kinetic[-1] == pytest.approx(kinetic[0], rel=1e-10)
+
+
+@pytest.mark.parametrize("friction_deg", [60.0, 70.0, 80.0])
+def test_a_wall_that_is_hit_does_not_enter_itself(tmp_path: Path, friction_deg: float) -> None:
+    """Bricks in running bond, without weight, hit in the middle by a block of twenty times their mass."""
+    text = block(box(-5.0, -0.5, 15.0, 0.5), "fixed")
+    for course in range(12):
+        heads = sorted({0.0, 3.0, *(0.25 * k + 0.125 * (course % 2) for k in range(1, 12))})
+        text += "".join(block(box(left, 0.1 * course, right - left, 0.1)) for left, right in itertools.pairwise(heads))
+    text += block(box(-1.1, 0.35, 1.0, 0.5), "velocity 10.4 0 0")
+    run_blocks(tmp_path, text, f"&joint friction_deg = {friction_deg} /\n&load gravity = 0 /\n"
+               "&analysis mode = 'dynamic', geometry = 'current', time_step = 1e-3, duration = 0.1, unknowns = 3 /\n"
+               "&output frames = 10, joints = .false. /\n")
+    assert deepest_entry(tmp_path / "out") <= 1e-4
