@@ -42,7 +42,7 @@ module dda_velocity
 
    !> Conditions on velocities at the end of a step
    type :: impact_t
-      !> Springs of the joints where they are after the step
+      !> Springs of the joints where they are after the step, without rows of open contacts
       type(joint_springs_t) :: springs
       !> Contacts that are closed there: (2, n_joint)
       logical, allocatable :: closed(:, :)
@@ -223,7 +223,24 @@ contains
          & impact%part = -run%settings%restitution*before(1:2, :)
       impact%force_before = run%step%state%force - masked_force(run, meets)
       if (.not. (at_end .and. any(meets))) impact%force_before = 0.0_wp
+      call drop_open_rows(impact%closed, impact%springs)
    end subroutine see_impacts
+
+   !> Let springs act at closed contacts alone
+   pure subroutine drop_open_rows(closed, springs)
+      logical, intent(in) :: closed(:, :)  !! Contacts that are closed: (2, n_joint)
+      type(joint_springs_t), intent(inout) :: springs
+      integer :: j, k
+
+      do j = 1, size(closed, 2)
+         do k = 1, 2
+            if (closed(k, j)) cycle
+            springs%row(:, k, :, j) = 0.0_wp
+            springs%shift(k, j) = 0.0_wp
+         end do
+         if (.not. any(closed(:, j))) springs%row(:, 3, :, j) = 0.0_wp
+      end do
+   end subroutine drop_open_rows
 
    !> Rates at the end of a step at which strain that follows its load opens contacts. They are
    !> extrapolated from the mean rates of this step and the one before, which is exact to the second
@@ -258,14 +275,13 @@ contains
       type(impact_t), intent(in) :: impact
       real(wp), intent(in) :: restitution  !! Share of the restitution that is applied
       type(step_state_t) :: state
-      type(joint_springs_t) :: springs
       real(wp) :: held_force(size(run%equations%fixed%force))
 
       held_force = run%equations%fixed%force
       call assemble_rates(run, impact)
-      call begin_rates(run, impact, restitution, springs, state)
+      call begin_rates(run, impact, restitution, state)
       associate (step => run%step, fixed => run%equations%fixed)
-         call settle_in_time(step%dt*fixed%rate, run%equations, springs, state)
+         call settle_in_time(step%dt*fixed%rate, run%equations, impact%springs, state)
          step%mean_force = state%force + impact%force_before
          ! half of the forces of the motion have acted as they did
          step%held_mean_force = fixed%force + held_force/2.0_wp
@@ -305,56 +321,33 @@ contains
       end associate
    end subroutine assemble_rates
 
-   !> Springs and forces that the search for velocities begins with
-   pure subroutine begin_rates(run, impact, restitution, springs, state)
+   !> Forces that the search for velocities begins with, and gaps that it closes
+   pure subroutine begin_rates(run, impact, restitution, state)
       type(run_t), intent(in) :: run
       type(impact_t), intent(in) :: impact
       real(wp), intent(in) :: restitution
-      type(joint_springs_t), intent(out) :: springs
       type(step_state_t), intent(out) :: state
       real(wp) :: part(3)
       logical :: bears(2)
       integer :: j
 
-      springs = impact%springs
       state = run%step%state
       state%rates = .true.
       ! speeds are found to the same digits in short steps
       state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%march%longest)
       state%force = state%force - impact%force_before
       do j = 1, size(run%contacts%joint)
-         call keep_closed(impact%closed(:, j), j, springs, state)
-         part = [restitution*impact%part(:, j), 0.0_wp]
-         ! strain pushes no contacts apart that bore nothing before the step, or a force of its own
-         bears = impact%closed(:, j) .and. run%contacts%force(1:2, j) > 0.0_wp &
-            & .and. .not. run%contacts%face(j)%idle
+         associate (closed => impact%closed(:, j))
+            state%face(j)%open = .not. closed
+            state%force(:, j) = merge(state%force(:, j), 0.0_wp, [closed, any(closed)])
+            part = [restitution*impact%part(:, j), 0.0_wp]
+            ! strain pushes no contact apart that bore nothing before, or a force of its own
+            bears = closed .and. run%contacts%force(1:2, j) > 0.0_wp &
+               & .and. .not. run%contacts%face(j)%idle
+         end associate
          where ([bears, any(bears)]) part = part - impact%strain_opening(:, j)
          state%gap(:, j) = -run%step%dt*part
       end do
    end subroutine begin_rates
-
-   !> Springs of one joint that act at its closed contacts alone
-   pure subroutine keep_closed(closed, j, springs, state)
-      !> Contacts that are closed: (2)
-      logical, intent(in) :: closed(2)
-      !> Number of the joint
-      integer, intent(in) :: j
-      type(joint_springs_t), intent(inout) :: springs
-      !> The state that the search for the velocities begins with
-      type(step_state_t), intent(inout) :: state
-      integer :: k
-
-      do k = 1, 2
-         state%face(j)%open(k) = .not. closed(k)
-         if (closed(k)) cycle
-         springs%row(:, k, :, j) = 0.0_wp
-         springs%shift(k, j) = 0.0_wp
-         state%force(k, j) = 0.0_wp
-      end do
-      if (.not. any(closed)) then
-         springs%row(:, 3, :, j) = 0.0_wp
-         state%force(3, j) = 0.0_wp
-      end if
-   end subroutine keep_closed
 
 end module dda_velocity
