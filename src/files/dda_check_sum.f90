@@ -61,7 +61,7 @@ contains
       integer(int32), parameter :: bits_4(0:15) = ieor(shiftr(bits_3, 1), &
          & merge(polynomial, 0_int32, btest(bits_3, 0)))
       ! a remainder of one byte after four and after eight of its bits: (0:255)
-      integer(int32), parameter :: half(0:255) = [(ieor(int(k/16, int32), &
+      integer(int32), parameter :: half(0:255) = [(ieor(int(shiftr(k, 4), int32), &
          & bits_4(iand(k, 15))), k=0, 255)]
       integer(int32), parameter :: whole(0:255) = ieor(shiftr(half, 4), bits_4(iand(half, 15)))
 
