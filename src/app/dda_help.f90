@@ -78,8 +78,8 @@ module dda_help
       & "", &
       & "Writes results.csv (one row per case), joints.csv (one row per joint), blocks.csv (one", &
       & "row per corner) and log.txt. Files for --resume: deck.record (the deck), sizes.record", &
-      & "(bytes per case), disk.record (rows synced to disk). run.lock is empty and locked", &
-      & "during a run; a second run into the folder ends with status 4.", &
+      & "(bytes and checksum per case). run.lock is empty and locked during a run; a second run", &
+      & "into the folder ends with status 4.", &
       & "'dda help' lists the exit statuses, 'dda help keys' the keys of a deck.", &
       & "'voussoir plot DIR' draws the results, 'voussoir verify DIR' checks their proofs."]
 

@@ -1,12 +1,10 @@
 !> Result tables of one deck: start, rows per case, end
 !>
-!> A row passed to the system survives the end of the program, but not a power failure. Therefore
-!> the tables are synced at intervals, results.csv last. Its length is recorded together with the
-!> boot identifier of the system. While this identifier is the same, all rows are valid; after a
-!> restart, those up to the recorded length.
+!> A row passed to the system survives the end of the program. Rows that a power failure takes are
+!> found by the checksums of sizes.record.
 module dda_result_tables
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_binary_file, only : is_link, sync_binary
+   use dda_binary_file, only : is_link
    use dda_check_sum, only : add_sums, line_sum
    use dda_deck, only : deck_t, has_group
    use dda_deck_sweep, only : few_cases, n_cases, swept_texts
@@ -17,9 +15,8 @@ module dda_result_tables
       & output_joints, output_proof, output_reactions, output_vtu, search_group, tie_group
    use dda_kinds, only : wp
    use dda_table_file, only : append_line, close_table, field_number, first_line, open_table, &
-      & part_name, remove_file, rename_part, table_file_t, without_field
+      & remove_file, table_file_t, without_field
    use dda_text, only : add_line, bytes_of, fields, growing_text_t, lines_of, to_text
-   use dda_text_file, only : read_text_file
    use dda_write_frames, only : frame_joints_header, frames_header, points_header
    use dda_write_results, only : block_lines, blocks_header, energy_header, joint_line, &
       & joint_row_t, joints_header, reactions_header, result_row_t, results_header, results_line, &
@@ -29,8 +26,7 @@ module dda_result_tables
 
    public :: result_tables_t, result_table_t, table, table_enum
    public :: name_tables, check_origin, open_tables, close_tables, write_case, write_waiting
-   public :: swept_fields, left_out, common_total, sync_tables
-   public :: trusted_length
+   public :: swept_fields, left_out, common_total
 
    !> Numbers of the tables in result_tables_t
    type :: table_enum
@@ -77,13 +73,8 @@ module dda_result_tables
       type(growing_text_t) :: waiting(3)
       integer(int64) :: waiting_sum = 0             !! Checksum of the unwritten lines of the log
       character(len=:), allocatable :: record_file  !! File with the record of deck and program
-      character(len=:), allocatable :: disk_file  !! File with the length of results.csv on the disk
-      integer(int64) :: due = 0     !! Clock time of the next sync
       logical :: has_vtu = .false.  !! True to write frames as VTU too
    end type result_tables_t
-
-   !> Smallest time between two syncs [s], and its ratio to their duration
-   integer, parameter :: sync_seconds = 1, sync_ratio = 20
 
    !> Characters of a header that identify a table
    integer, parameter :: origin_length = 9
@@ -91,9 +82,6 @@ module dda_result_tables
    !> Columns of results.csv that are also swept parameters
    character(len=*), parameter :: own_column(*) = [character(len=16) :: "half_angle_deg", &
       & "thickness_ratio", "friction_deg", "mode", "geometry", "unknowns"]
-
-   !> Linux: file with an identifier that changes at each start
-   character(len=*), parameter :: start_file = "/proc/sys/kernel/random/boot_id"
 
 contains
 
@@ -112,7 +100,6 @@ contains
       end do
       tables%folder = folder
       tables%record_file = folder//"/deck.record"
-      tables%disk_file = folder//"/disk.record"
       tables%has_vtu = deck%value(output_vtu)%flag
       searches = has_group(deck, search_group)
       call name_table(table%results, "/results.csv", results_header(names, &
@@ -207,12 +194,10 @@ contains
       character(len=*), intent(in) :: record  !! Record of deck and program
       type(error_t), allocatable, intent(out) :: error
       type(table_file_t) :: file
-      integer(int64) :: now, rate
       integer :: i
 
       ! remove the record first: if the run is killed here, old rows must not be taken for new ones
       call remove_file(tables%record_file)
-      call remove_file(tables%disk_file)
       do i = 1, size(tables%at)
          associate (this => tables%at(i))
             if (this%wanted) then
@@ -224,38 +209,16 @@ contains
          if (allocated(error)) return
       end do
       tables%total = common_total(tables)
-      call write_disk_record(tables%disk_file, 0_int64, error)
-      if (.not. allocated(error)) call open_table(tables%record_file, record, file, error)
+      call open_table(tables%record_file, record, file, error)
       call close_table(file, error)
-      call system_clock(now, rate)
-      tables%due = now + sync_seconds*rate
    end subroutine open_tables
 
-   !> Sync all tables to disk, results.csv last, and record its length
-   subroutine sync_tables(tables, error)
-      type(result_tables_t), intent(inout) :: tables
-      type(error_t), allocatable, intent(inout) :: error
-      integer(int64) :: start, end, rate
-      integer :: i
-
-      if (allocated(error)) return
-      call system_clock(start, rate)
-      do i = size(tables%at), 1, -1
-         call sync_binary(tables%at(i)%open%file, error)
-      end do
-      if (allocated(error)) return
-      call write_disk_record(tables%disk_file, tables%at(table%results)%open%length, error)
-      call system_clock(end)
-      tables%due = end + max(sync_seconds*rate, sync_ratio*(end - start))
-   end subroutine sync_tables
-
-   !> Sync all tables to disk and close them
+   !> Close all tables
    subroutine close_tables(tables, error)
       type(result_tables_t), intent(inout) :: tables
       type(error_t), allocatable, intent(inout) :: error
       integer :: i
 
-      call sync_tables(tables, error)
       do i = 1, size(tables%at)
          call close_table(tables%at(i)%open, error)
       end do
@@ -336,7 +299,6 @@ contains
       type(result_tables_t), intent(inout) :: tables
       type(error_t), allocatable, intent(inout) :: error  !! An earlier error or a failure to write
       type(error_t), allocatable :: late
-      integer(int64) :: now
       integer :: i, place(3)
 
       place = [table%log, table%sizes, table%results]
@@ -347,49 +309,5 @@ contains
       end do
       tables%waiting_sum = 0
       if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
-      call system_clock(now)
-      if (now >= tables%due) call sync_tables(tables, error)
    end subroutine write_waiting
-
-   !> Record the length that is on the disk
-   subroutine write_disk_record(file, length, error)
-      character(len=*), intent(in) :: file  !! Name of the record
-      integer(int64), intent(in) :: length  !! Length of results.csv on the disk [bytes]
-      type(error_t), allocatable, intent(inout) :: error
-      type(table_file_t) :: record
-
-      if (allocated(error)) return
-      call open_table(part_name(file), to_text(real(length, wp))//" "//start_name(), record, error)
-      call close_table(record, error)
-      if (.not. allocated(error)) call rename_part(file, error)
-   end subroutine write_disk_record
-
-   !> Length of valid rows in results.csv [bytes]; the whole file in a folder without a record
-   integer(int64) function trusted_length(file)
-      character(len=*), intent(in) :: file
-      character(len=:), allocatable :: text
-      type(error_t), allocatable :: error
-      logical :: there
-      integer :: stat
-
-      trusted_length = huge(trusted_length)
-      inquire (file=file, exist=there)
-      if (.not. there) return
-      call read_text_file(file, text, error)
-      if (index(text, " "//start_name()//new_line("a")) > 0) return
-      read (text, *, iostat=stat) trusted_length
-      if (stat /= 0) trusted_length = 0
-   end function trusted_length
-
-   !> Boot identifier of the system; a dash if there is none
-   function start_name() result(name)
-      character(len=36) :: name
-      integer :: unit, stat
-
-      name = "-"
-      open (newunit=unit, file=start_file, status="old", action="read", iostat=stat)
-      if (stat /= 0) return
-      read (unit, "(a)", iostat=stat) name
-      close (unit)
-   end function start_name
 end module dda_result_tables

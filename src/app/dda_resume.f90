@@ -5,10 +5,10 @@
 !> from the tables, including incomplete ones.
 submodule (dda_verbs:dda_run) dda_resume
    use, intrinsic :: iso_fortran_env, only : int64
-   use dda_binary_file, only : sync_binary
+   use dda_binary_file, only : flush_binary
    use dda_check_sum, only : add_sums, line_sum
    use dda_kinds, only : wp
-   use dda_result_tables, only : common_total, result_table_t, sync_tables, table, trusted_length
+   use dda_result_tables, only : common_total, result_table_t, table
    use dda_table_file, only : close_lines, field, field_number, keep_line, next_line, open_lines, &
       & open_table, part_name, rename_part, table_lines_t, without_field
    use dda_text, only : read_integer, read_number
@@ -29,7 +29,7 @@ contains
       if (.not. finished%same_deck) return
       allocate (whole(total))
       call compare_sizes(tables, whole)
-      call read_results(tables%at(table%results), trusted_length(tables%disk_file), whole, finished)
+      call read_results(tables%at(table%results), whole, finished)
    end procedure find_finished
 
    !> Compare bytes and checksum of each case with its record
@@ -84,10 +84,9 @@ contains
    end subroutine add_bytes
 
    !> Find the cases with a valid row in results.csv
-   subroutine read_results(this, length, whole, finished)
+   subroutine read_results(this, whole, finished)
       type(result_table_t), intent(in) :: this
-      integer(int64), intent(in) :: length  !! Length of valid rows [bytes]
-      logical, intent(in) :: whole(:)       !! True for cases complete in other tables: (n)
+      logical, intent(in) :: whole(:)  !! True for cases complete in other tables: (n)
       type(finished_t), intent(inout) :: finished
       type(table_lines_t) :: lines
       character(len=:), allocatable :: line
@@ -97,7 +96,7 @@ contains
 
       column = case_column(this%header)
       verdict = field_number(this%header, "verdict")
-      call open_lines(this%file, lines, length)
+      call open_lines(this%file, lines)
       do
          call next_row(column, size(whole), lines, line, number)
          if (number == 0) exit
@@ -122,7 +121,6 @@ contains
          if (allocated(error)) return
       end do
       tables%total = common_total(tables)
-      call sync_tables(tables, error)
    end procedure reopen_tables
 
    !> Rewrite a table with the rows of finished cases only
@@ -148,8 +146,8 @@ contains
          if (once) wanted(number) = .false.
       end do
       call close_lines(lines)
-      ! sync first: the file must not be renamed before its lines are on the disk
-      call sync_binary(this%open%file, error)
+      ! a full disk must not replace the table
+      call flush_binary(this%open%file, error)
       if (.not. allocated(error)) call rename_part(this%file, error)
    end subroutine keep_rows
 

@@ -5,7 +5,7 @@
 !> since a checksum does not prove its origin.
 module dda_restart
    use, intrinsic :: iso_fortran_env, only : int32, int64
-   use dda_binary_file, only : append_text, binary_file_t, close_binary, open_binary, sync_binary
+   use dda_binary_file, only : write_file
    use dda_block_system, only : block_system_t
    use dda_check_sum, only : crc_32
    use dda_contacts, only : contacts_t
@@ -262,27 +262,20 @@ contains
    end subroutine take_state
 
    !> Write a file of numbers in the machine's own form, after a checksum; a file of that name is
-   !> replaced when the new one is on the disk
+   !> replaced when the new one is complete
    subroutine write_numbers(file, title, whole, number, error)
       character(len=*), intent(in) :: file
       character(len=*), intent(in) :: title  !! Its first bytes, which identify its contents
       integer(int32), intent(in) :: whole(:)
       real(wp), intent(in) :: number(:)
       type(error_t), allocatable, intent(out) :: error
-      type(error_t), allocatable :: late
-      type(binary_file_t) :: opened
       character(len=:), allocatable :: bytes
 
-      call open_binary(part_name(file), opened, error)
-      if (allocated(error)) return
       bytes = transfer([size(whole), size(number)], repeat(" ", 8)) &
          & //transfer(whole, repeat(" ", 4*size(whole))) &
          & //transfer(number, repeat(" ", 8*size(number)))
       ! before the numbers: behind them, the sum of the whole file would be the same for all files
-      call append_text(opened, title//transfer(crc_32(bytes), repeat(" ", 8))//bytes)
-      call sync_binary(opened, error)
-      call close_binary(opened, late)
-      if (allocated(late) .and. .not. allocated(error)) call move_alloc(late, error)
+      call write_file(part_name(file), title//transfer(crc_32(bytes), repeat(" ", 8))//bytes, error)
       if (.not. allocated(error)) call rename_part(file, error)
    end subroutine write_numbers
 

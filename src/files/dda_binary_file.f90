@@ -3,13 +3,13 @@
 module dda_binary_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
       & c_ptr, c_size_t
-   use dda_c_files, only : c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, c_fsync, &
+   use dda_c_files, only : c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, &
       & c_ferror, c_fclose, c_readlink, c_unlink
    use dda_error, only : error_t, fatal_error
    implicit none
    private
 
-   public :: binary_file_t, open_binary, open_descriptor, flush_binary, sync_binary, close_binary
+   public :: binary_file_t, open_binary, open_descriptor, flush_binary, close_binary
    public :: descriptor_of, write_file
    public :: append_text, is_link, remove_link
 
@@ -100,18 +100,6 @@ contains
       failed = [c_fflush(file%handle), c_ferror(file%handle)]
       if (any(failed /= 0)) call fatal_error(error, no_room, file%name, 1)
    end subroutine flush_binary
-
-   !> Sync a file to disk, so that its contents survive a power failure
-   subroutine sync_binary(file, error)
-      type(binary_file_t), intent(in) :: file  !! The file; no effect if it is not open
-      type(error_t), allocatable, intent(inout) :: error
-
-      if (.not. c_associated(file%handle) .or. allocated(error)) return
-      call flush_binary(file, error)
-      if (allocated(error)) return
-      if (c_fsync(c_fileno(file%handle)) /= 0) call fatal_error(error, "cannot write the "// &
-         & "results: fsync failed; check the disk or write elsewhere", file%name, 1)
-   end subroutine sync_binary
 
    !> Close a file
    subroutine close_binary(file, error)

@@ -4,7 +4,7 @@ module dda_c_files
    implicit none
    private
 
-   public :: c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno, c_fsync
+   public :: c_fopen, c_fdopen, c_fwrite, c_fflush, c_fileno
    public :: c_ferror, c_fclose, c_fread, c_access, c_open, c_close, c_lseek, c_unlink, c_readlink
 
    interface
@@ -47,13 +47,6 @@ module dda_c_files
          type(c_ptr), intent(in), value :: handle
          integer(c_int) :: descriptor
       end function c_fileno
-
-      !> C: wait until the data are on the disk
-      function c_fsync(descriptor) bind(c, name="fsync") result(failed)
-         import :: c_int
-         integer(c_int), intent(in), value :: descriptor
-         integer(c_int) :: failed
-      end function c_fsync
 
       !> C: error indicator of a file
       function c_ferror(handle) bind(c, name="ferror") result(failed)

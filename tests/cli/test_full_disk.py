@@ -55,11 +55,11 @@ def write(folder: Path) -> None:
 
 
 def files_of(folder: Path) -> dict[str, int]:
-    """Sizes of all files below a folder; disk.record left out, whose length depends on the time."""
+    """Sizes of all files below a folder."""
     return {
         str(path.relative_to(folder)): path.stat().st_size
         for path in folder.rglob("*")
-        if path.is_file() and path.name not in ("disk.record", "run.lock")
+        if path.is_file() and path.name != "run.lock"
     }
 
 

@@ -39,7 +39,7 @@ def tables(folder: Path) -> dict[str, list[str]]:
     """Lines of all tables in the order of the alphabet, wall times left out."""
     found = {}
     for file in folder.iterdir():
-        if file.is_file() and file.name != "disk.record":
+        if file.is_file():
             lines = file.read_text().splitlines()
             if file.name == "results.csv":
                 place = lines[0].split(",").index("seconds") - len(lines[0].split(","))
@@ -229,71 +229,6 @@ def test_killed_twice_ends_as_an_unbroken_run(tmp_path: Path, signals: int) -> N
     resumed = tables(out)
     assert run_dda("run", "deck.nml", "--out", "unbroken", "--quiet", cwd=tmp_path).returncode == 0
     assert tables(tmp_path / "unbroken") == resumed
-
-
-def lose_power(out: Path, rows: int, joints: int) -> None:
-    """Leave what a loss of power may leave: of results.csv the first rows are on the disk for
-    certain, all others may be, and of the joints' last rows some are gone."""
-    lines = (out / "results.csv").read_text().splitlines(keepends=True)
-    length = sum(map(len, lines[: rows + 1]))
-    (out / "disk.record").write_text(f"{length} 00000000-0000-0000-0000-000000000000\n")
-    whole = (out / "joints.csv").read_text().splitlines(keepends=True)
-    (out / "joints.csv").write_text("".join(whole[:-joints]))
-
-
-@pytest.mark.parametrize(("rows", "joints"), [(11, 1), (11, 3), (9, 40), (0, 1)])
-def test_after_a_loss_of_power_only_rows_on_the_disk_count(tmp_path: Path, rows: int, joints: int) -> None:
-    out = write_deck(tmp_path)
-    run(tmp_path)
-    whole, times = tables(out), seconds(out)
-    lose_power(out, rows, joints)
-    done = run(tmp_path, "--resume")
-    assert done.returncode == 0
-    assert f"{rows} of 12 cases are already computed" in done.stdout
-    assert tables(out) == whole
-    again = seconds(out)
-    assert sum(again[case] == times[case] for case in times) >= rows
-    assert "12 of 12" in run(tmp_path, "--resume").stdout
-
-
-@pytest.mark.parametrize("text", ["", "x", "-5 other\n", "99999999999999999999999 other\n"])
-def test_record_that_cannot_be_read_vouches_for_nothing(tmp_path: Path, text: str) -> None:
-    out = write_deck(tmp_path)
-    run(tmp_path)
-    whole = tables(out)
-    (out / "disk.record").write_text(text)
-    assert "0 of 12 cases are already computed" in run(tmp_path, "--resume").stdout
-    assert tables(out) == whole
-
-
-def test_record_is_never_ahead_of_the_table(tmp_path: Path) -> None:
-    text = DECK + "&sweep parameter = 'friction_deg', first = 30, last = 60, count = 40 /\n"
-    out = write_deck(tmp_path, text)
-    seen = set()
-    with subprocess.Popen([os.environ["DDA"], "run", "deck.nml", "--quiet"], cwd=tmp_path) as process:
-        while process.poll() is None:
-            if (out / "disk.record").exists():
-                length = int((out / "disk.record").read_text().split()[0])
-                assert length <= (out / "results.csv").stat().st_size
-                seen.add(length)
-            time.sleep(0.01)
-    assert int((out / "disk.record").read_text().split()[0]) == (out / "results.csv").stat().st_size
-    assert 0 in seen
-    ends = {0}
-    for line in (out / "results.csv").read_bytes().splitlines(keepends=True):
-        ends.add(max(ends) + len(line))
-    assert seen <= ends
-
-
-def test_record_that_cannot_be_written_gives_4(tmp_path: Path) -> None:
-    out = write_deck(tmp_path)
-    run(tmp_path)
-    before = (out / "results.csv").read_bytes()
-    (out / "disk.record.part").mkdir()
-    done = run(tmp_path, "--resume")
-    assert done.returncode == 4
-    assert "disk.record.part" in done.stderr and "12 of 12 cases are safe" in done.stderr
-    assert (out / "results.csv").read_bytes() == before
 
 
 def test_table_that_cannot_be_replaced_gives_4_and_is_kept(tmp_path: Path) -> None:

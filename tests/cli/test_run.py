@@ -15,7 +15,7 @@ UNDECIDED = "&arch thickness_ratio = 0.12 /\n&analysis geometry = 'current', ste
 BAD = "&arch\n thickness_ratio = 2 /\n"
 PROOFS = ["proof_forces.csv", "proof_motion.csv"]
 TABLES = ["blocks.csv", "joints.csv", "log.txt", *PROOFS, "reactions.csv", "results.csv"]
-FILES = sorted(["deck.record", "disk.record", "run.lock", "sizes.record", *TABLES])
+FILES = sorted(["deck.record", "run.lock", "sizes.record", *TABLES])
 
 
 def write_decks(folder: Path, **texts: str) -> None:
@@ -145,7 +145,7 @@ def test_results_of_an_earlier_run_are_replaced(tmp_path: Path) -> None:
     assert run_dda("run", "many.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert run_dda("run", "one.nml", "--out", "results", cwd=tmp_path).returncode == 0
     assert len(cases_of(tmp_path / "results")) == 1
-    files = ["deck.record", "disk.record", "log.txt", "results.csv", "run.lock", "sizes.record"]
+    files = ["deck.record", "log.txt", "results.csv", "run.lock", "sizes.record"]
     assert names_in(tmp_path / "results") == files
 
 

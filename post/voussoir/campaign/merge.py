@@ -52,7 +52,6 @@ def merge(parts: list[Path], total: int, out: Path, record: str, headers: dict[s
     Each table, by its name and first line, is replaced at once.
     """
     owner, tidy = owners(parts, total)
-    (out / "disk.record").unlink(missing_ok=True)  # of another run: these tables are written whole
     for name in TABLES:
         if name not in headers or not any((part / name).exists() for part in parts):
             (out / name).unlink(missing_ok=True)  # of another deck

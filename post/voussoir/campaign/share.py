@@ -64,7 +64,7 @@ def open_campaign(
         check_origin(out / "results.csv")
     if discard:
         shutil.rmtree(campaign.parts, ignore_errors=True)
-        for name in ("campaign.record", "deck.record", "results.csv", "disk.record"):
+        for name in ("campaign.record", "deck.record", "results.csv"):
             (out / name).unlink(missing_ok=True)
     campaign.parts.mkdir(parents=True, exist_ok=True)
     known = content_of(file).decode(errors="replace")
@@ -76,8 +76,7 @@ def open_campaign(
             f"{changed_keys(record, asked.record)}); choose another --out, or discard its contents with --discard")
     if known != text:
         if content_of(out / "deck.record") != asked.record.encode():
-            for name in ("results.csv", "disk.record"):  # of whatever was there before
-                (out / name).unlink(missing_ok=True)
+            (out / "results.csv").unlink(missing_ok=True)  # of whatever was there before
         replace(file, lambda opened: opened.write(text.encode()))
     return campaign
 
