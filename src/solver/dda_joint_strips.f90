@@ -299,11 +299,12 @@ contains
       type(joint_strip_t), intent(in) :: strip
       real(rk), intent(in) :: opening(3)    !! Opening 1, opening 2, slip
       real(wp), intent(inout) :: rate(:, :) !! Rates; those of the joint are set: (n_side, n_joint)
-      real(rk) :: y(2), left(3)
+      real(rk) :: y(2), left(3), edge(3, 2)
 
       associate (j => strip%joint)
+         edge = edges(strip%share)
          y = matmul(strip%soft, matmul(opening, strip%arm))
-         left = opening - matmul(edges(strip%share), y)
+         left = opening - matmul(edge, y)
          left(1:2) = left(1:2) - strip%slack*dot_product(strip%column, left)
          rate(:, j) = real(matmul(left, joint_rays(strip%kind, strip%friction)), wp)
          rate(:2, strip%place) = real(y, wp)
