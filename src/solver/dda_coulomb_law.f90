@@ -64,14 +64,15 @@ module dda_coulomb_law
          type(coulomb_state_t), intent(inout) :: state
       end subroutine crush_joint
 
-      !> Normal forces and gaps of a joint that crushes after increments of its openings, while its
-      !> corners stay open and closed
-      pure module subroutine yield_joint(joints, j, ends, opening, state)
+      !> Normal forces and gaps of a joint that crushes after increments, while its corners stay
+      !> open and closed: a strip follows the increment of its force, and an opening is left
+      pure module subroutine yield_joint(joints, j, ends, opening, change, state, lag)
          type(coulomb_joints_t), intent(in) :: joints
          integer, intent(in) :: j               !! Number of the joint
          integer(small), intent(in) :: ends(2)  !! States of its corners
-         real(wp), intent(in) :: opening(2)     !! Increments of opening 1 and opening 2
+         real(wp), intent(in) :: opening(2), change  !! Increments of openings 1 and 2, of N1 + N2
          type(coulomb_state_t), intent(inout) :: state
+         real(wp), intent(out) :: lag           !! Opening of both corners that is left
       end subroutine yield_joint
 
    end interface

@@ -16,8 +16,8 @@ module dda_crushed_joint
    implicit none
    private
 
-   public :: bear_side, can_crush, is_crushed, place_strips, reserve, strip_gap_rate, stretch_of
-   public :: turn_of_corner, weight_of
+   public :: bear_side, can_crush, is_crushed, lean_side, place_strips, reserve
+   public :: stretch_of, strip_gap_rate, turn_of_corner, weight_of
 
    !> Largest share of a joint in its strip: all of it
    real(wp), parameter :: most_share = 1.0_wp
@@ -190,4 +190,29 @@ contains
             & + c*(force(3 - side) - force(side))
       end associate
    end subroutine bear_side
+
+   !> Put a joint that one corner bears on the strip of a normal force. The opening that the joint
+   !> would need beyond this, the same at both corners, is left: zero where `bear_side` has the
+   !> same force
+   pure subroutine lean_side(joints, j, side, opening, normal, force, gap, lag)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j               !! Number of the joint
+      integer, intent(in) :: side            !! The corner that bears it
+      real(wp), intent(in) :: opening(2)     !! Opening 1, opening 2
+      real(wp), intent(in) :: normal         !! N1 + N2
+      real(wp), intent(inout) :: force(:)    !! Receives N1, N2
+      real(wp), intent(inout) :: gap(:)      !! Receives the openings beyond the springs
+      real(wp), intent(out) :: lag           !! Opening that is left
+      real(wp) :: beyond(2), s
+
+      associate (c => joints%graph%compliance(j), strength => joints%graph%crush(j))
+         s = min(most_share, max(0.0_wp, normal/strength))
+         force(side) = s*(1.0_wp - 0.5_wp*s)*strength
+         force(3 - side) = 0.5_wp*s**2*strength
+         beyond = opening + c*force(:2)
+         gap(side) = 0.0_wp
+         gap(3 - side) = beyond(3 - side) - beyond(side)
+         lag = (1.0_wp - s)*beyond(side) + s*beyond(3 - side)
+      end associate
+   end subroutine lean_side
 end module dda_crushed_joint

@@ -1,6 +1,6 @@
 !> Law of joints that crush: all of a joint, or one side of it
 submodule (dda_coulomb_law) dda_crushed_law
-   use dda_crushed_joint, only : bear_side, reserve, stretch_of
+   use dda_crushed_joint, only : bear_side, lean_side, reserve, stretch_of
    implicit none
 
 contains
@@ -45,10 +45,12 @@ contains
       gap = -(stretch([2, 1]) + joints%graph%compliance(j)*force)
    end subroutine crush_whole
 
-   !> Normal forces and gaps of a joint that crushes after increments of its openings, while its
-   !> corners stay open and closed
+   !> Normal forces and gaps of a joint that crushes after increments of its openings and its force,
+   !> while its corners stay open and closed
    module procedure yield_joint
       real(wp) :: stretch(2)
+
+      lag = 0.0_wp
 
       stretch = opening + stretch_of(joints, j, state%face(:2, j), state%force(:2, j), &
          & state%gap(:, j))
@@ -62,7 +64,8 @@ contains
             force = -stretch/joints%graph%compliance(j)
             gap = 0.0_wp
          else
-            call bear_side(joints, j, merge(1, 2, ends(1) == face%closed), stretch, force, gap)
+            call lean_side(joints, j, merge(1, 2, ends(1) == face%closed), stretch, &
+               & sum(force) + change, force, gap, lag)
          end if
       end associate
    end procedure yield_joint

@@ -6,8 +6,9 @@
 submodule (dda_loading_path:dda_path_steps) dda_path_bends
    use dda_crushed_joint, only : bear_side, can_crush, reserve
    use dda_coulomb_joints, only : end_role, shear_role
-   use dda_coulomb_law, only : face, imbalance, spring_forces
+   use dda_coulomb_law, only : face, imbalance, normal_forces, spring_forces
    use dda_event_rates, only : solve_rates, weak_force
+   use dda_kinds, only : small
    use dda_path_event, only : go_ahead, left_to_event
    implicit none
 
@@ -16,8 +17,8 @@ submodule (dda_loading_path:dda_path_steps) dda_path_bends
    real(wp), parameter :: exact = 1.0e-12_wp
    !> Largest correction of a step over the step: a larger one may lead to another state of balance
    real(wp), parameter :: most_bend = 0.2_wp
-   !> Share of a step that failed
-   real(wp), parameter :: shorter = 0.25_wp
+   !> Least and largest share of a step that failed
+   real(wp), parameter :: shorter = 0.25_wp, somewhat_shorter = 0.9_wp
    !> Maximum number of corrections
    integer, parameter :: most_turns = 12
    !> Largest share of the strength with which joints begin to crush
@@ -30,6 +31,7 @@ contains
       type(coulomb_state_t) :: last
       type(event_t) :: aim
       integer, parameter :: most_tries = 60
+      real(wp) :: next
       integer :: try
 
       last = state
@@ -37,14 +39,14 @@ contains
       found = .false.
       do try = 1, most_tries
          call walk(path, way, rates, last%load, most_bend*event%distance &
-            & *maxval(abs(rates%motion)), event, state, found)
+            & *maxval(abs(rates%motion)), event, state, next, found)
          if (found) then
             aim = passed_limit(path%joints, last, state, rates, event)
             found = .not. aim%distance < event%distance
             if (found) exit
             event = aim
          else
-            event = event_t(shorter*event%distance)
+            event = event_t(next)
          end if
          if (event%distance < no_way) exit
          state = last
@@ -66,7 +68,7 @@ contains
    end function rates_of_faces
 
    !> Walk to an event, or by a distance if it has none, in balance
-   pure subroutine walk(path, way, rates, load, largest, event, state, found)
+   pure subroutine walk(path, way, rates, load, largest, event, state, next, found)
       type(loading_path_t), intent(inout) :: path
       type(path_rate_t), intent(in) :: way
       type(rates_t), intent(in) :: rates      !! Rates where it begins
@@ -74,23 +76,28 @@ contains
       real(wp), intent(in) :: largest         !! Largest motion by a correction
       type(event_t), intent(inout) :: event   !! The event; its distance is corrected
       type(coulomb_state_t), intent(inout) :: state
+      real(wp), intent(out) :: next           !! A distance to try where it is not
       logical, intent(out) :: found           !! True if it is there
       type(rates_t) :: onward, step
-      real(wp) :: left(2), more, rest(3, size(load, 2))
+      real(wp) :: drive(3, size(state%slip)), lag(size(state%slip)), left(2), more, off
+      real(wp) :: rest(3, size(load, 2))
       integer :: turn
 
-      call go_ahead(path%joints, rates, event%distance, state)
+      next = shorter*event%distance
+      call go_ahead(path%joints, rates, event%distance, state, lag)
       step = rates
       onward = rates
       do turn = 1, most_turns
          state%load = load + event%distance*way%load
          call imbalance(path%joints, state%load, state%force, rest)
          left = left_to_event(path%joints, state, onward, event)
-         found = maxval(abs([maxval(abs(rest)), left(1)])) <= exact*max(1.0_wp, &
-            & maxval(abs(state%force)))
-         if (found) return
          call bend_joints(path%equations, path%joints, state)
-         call solve_rates(path%joints, path%equations, rest, 0.0_wp, step)
+         off = max(maxval(abs(rest)), force_of_lag(path%joints, step%face, lag))
+         found = max(off, abs(left(1))) <= exact*max(1.0_wp, maxval(abs(state%force)))
+         if (found) return
+         drive(:2, :) = spread(lag, 1, 2)
+         drive(3, :) = 0.0_wp
+         call solve_rates(path%joints, path%equations, rest, 0.0_wp, step, drive)
          if (.not. path%equations%usable) return
          call spring_forces(path%joints, step%face, step%opening, step%force)
          if (event%kind /= event_kind%none) then
@@ -107,10 +114,29 @@ contains
             step%force = step%force + more*onward%force
          end if
          ! forces that count as none may move soft blocks far: no other state
-         if (maxval(abs(step%motion)) > largest .and. maxval(abs(rest)) > weak_force) return
-         call go_ahead(path%joints, step, 1.0_wp, state)
+         if (maxval(abs(step%motion)) > largest .and. off > weak_force) then
+            ! the correction grows as the square of the distance, its permitted size as the distance
+            next = event%distance*max(shorter, min(somewhat_shorter, largest &
+               & /maxval(abs(step%motion))))
+            return
+         end if
+         call go_ahead(path%joints, step, 1.0_wp, state, lag)
       end do
    end subroutine walk
+
+   !> Largest force that the openings which crushed joints leave would change
+   pure real(wp) function force_of_lag(joints, faces, lag) result(largest)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer(small), intent(in) :: faces(:, :)  !! Faces of the joints: (3, n_joint)
+      real(wp), intent(in) :: lag(:)             !! The openings: (n_joint)
+      integer :: j
+
+      largest = 0.0_wp
+      do j = 1, size(lag)
+         if (abs(lag(j)) > 0.0_wp) largest = max(largest, &
+            & maxval(abs(normal_forces(joints, j, faces(:2, j), spread(lag(j), 1, 2)))))
+      end do
+   end function force_of_lag
 
    !> Rate of what is left to an event
    pure real(wp) function rate_of(path, state, rates, event) result(rate)
@@ -205,6 +231,7 @@ contains
       type(rates_t) :: rates
       type(event_t) :: event
       integer, parameter :: most_tries = 6
+      real(wp) :: next
       integer :: i, try
 
       whole = state
@@ -231,7 +258,7 @@ contains
          end do
          event = event_t(0.0_wp)
          call walk(path, way, rates, share*whole%load, most_bend*maxval(abs(state%motion)), event, &
-            & state, settled)
+            & state, next, settled)
          if (settled) return
          share = 0.1_wp*share
       end do

@@ -9,8 +9,8 @@ module dda_path_event
    implicit none
    private
 
-   public :: event_t, event_kind, event_kind_enum, path_end
-   public :: go_ahead, go_back, hold_forces, left_to_event, move_on, next_event
+   public :: event_t, event_kind, event_kind_enum, path_end, go_ahead, go_back, hold_forces
+   public :: left_to_event, move_on, next_event
 
    !> Events of a joint
    type :: event_kind_enum
@@ -301,18 +301,21 @@ contains
    end subroutine let_happen
 
    !> Move a state on while all faces stay, beyond the limits of its joints, too
-   pure subroutine go_ahead(joints, rates, distance, state)
+   pure subroutine go_ahead(joints, rates, distance, state, lag)
       type(coulomb_joints_t), intent(in) :: joints
       type(rates_t), intent(in) :: rates  !! Rates of the state
       real(wp), intent(in) :: distance    !! Distance along them
       type(coulomb_state_t), intent(inout) :: state
+      real(wp), intent(out) :: lag(:)     !! Openings that crushed joints leave: (n_joint)
       real(wp) :: shear
       integer :: i, j
 
       state%motion = state%motion + distance*rates%motion
       do j = 1, size(rates%face, 2)
+         lag(j) = 0.0_wp
          if (can_crush(joints, j)) then
-            call yield_joint(joints, j, rates%face(:2, j), distance*rates%opening(:2, j), state)
+            call yield_joint(joints, j, rates%face(:2, j), distance*rates%opening(:2, j), &
+               & distance*sum(rates%force(:2, j)), state, lag(j))
          else
             do i = 1, 2
                state%force(i, j) = state%force(i, j) + distance*rates%force(i, j)
@@ -335,8 +338,7 @@ contains
    !> Put the forces of a joint that crushes where one of its corners opens
    pure subroutine touch_limit(joints, j, corner, state)
       type(coulomb_joints_t), intent(in) :: joints
-      integer, intent(in) :: j       !! Number of the joint
-      integer, intent(in) :: corner  !! The corner
+      integer, intent(in) :: j, corner  !! Number of the joint, the corner
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: n
 
