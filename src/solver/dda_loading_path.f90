@@ -84,8 +84,8 @@ module dda_loading_path
       real(wp) :: largest_jump = 0.0_wp
       !> Growth beyond its length in which joints that crush may still find balance
       real(wp) :: rest = 0.0_wp
-      !> Length of its last step, and largest rate of motion there
-      real(wp) :: step = 0.0_wp, pace = 0.0_wp
+      !> Length of its last step, and largest rate of motion over the motion there
+      real(wp) :: step = 0.0_wp, haste = 0.0_wp
       !> Growth that changes a force as much as the jumps have changed some, here and before
       real(wp) :: spread = 0.0_wp
       !> Factorisations

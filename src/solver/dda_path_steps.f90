@@ -29,6 +29,9 @@ submodule (dda_loading_path) dda_path_steps
    real(wp), parameter :: rests_unbalanced = 1.0e-6_wp
    !> Distance to an event below which it makes no progress
    real(wp), parameter :: no_way = 1.0e-13_wp
+   !> Step over the load that is left before the largest one, as the motion grows, that is no gain:
+   !> steps are a tenth of it and more
+   real(wp), parameter :: no_gain = 1.0e-2_wp
    !> Maximum number of events without progress
    integer, parameter :: max_standstill = 60
    !> Maximum number of events and jumps, and per joint
@@ -41,11 +44,13 @@ contains
    !> From event to event, with jumps, which have rates of their own, where no rates go on
    module procedure follow
       type(rates_t) :: rates
-      real(wp) :: damping, last_jump, width
+      type(jump_t) :: jump
+      real(wp) :: damping, last_jump, start(3, size(state%load, 2)), width
       integer :: standstill, i
       logical :: goes_on, slow
 
       standstill = 0
+      start = state%motion
       last_jump = -1.0_wp
       width = nudge
       damping = path%equations%rest_damping
@@ -58,6 +63,14 @@ contains
          if (goes_on) call step_on(path, first, way, h_end, rates, standstill, state, result, &
             & goes_on)
          path%equations%rest_damping = damping
+         if (goes_on .and. result%end == path_end%reached .and. result%rest > 0.0_wp) then
+            ! beyond a far motion a path that leads hardly any farther falls
+            if (result%step*result%haste < no_gain .and. &
+               & maxval(abs(state%motion - start)) > far_of(path, state)) then
+               jump%mechanism = rates%motion
+               call note_fall(motion_end%far, jump, result)
+            end if
+         end if
          if (.not. goes_on) then
             slow = result%reached - last_jump < slow_factor*width
             width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
@@ -111,14 +124,16 @@ contains
       type(coulomb_state_t) :: last
       type(event_t) :: event
       type(jump_t) :: jump
+      real(wp) :: haste
       integer :: end
 
       found = .true.
       if (allocated(state%whole)) last = state
       if (allocated(path%joints%share)) then
+         haste = maxval(abs(rates%motion))/max(maxval(abs(state%motion)), tiny(haste))
          call follow_bend(path, way, rates, h_end - result%reached, state, event, found)
          if (.not. found) return
-         call see_rest(rates, event, result)
+         call see_rest(haste, event, result)
       else
          event = next_event(path%joints, state, rates, h_end - result%reached)
          call move_on(path%joints, rates, event, state)
@@ -137,21 +152,21 @@ contains
    end subroutine step_on
 
    !> Load that a step has left to the largest one that joints bear as they crush. Near that one
-   !> the motion grows as the inverse of this load, and its rate as the inverse square
-   pure subroutine see_rest(rates, event, result)
-      type(rates_t), intent(in) :: rates  !! Rates where the step began
+   !> the motion grows as a power of this load, its inverse or the root of that, so that the motion
+   !> over its rate is a multiple of this load
+   pure subroutine see_rest(haste, event, result)
+      real(wp), intent(in) :: haste       !! Rate of motion over the motion, where the step began
       type(event_t), intent(in) :: event  !! Where it has ended
       type(path_result_t), intent(inout) :: result
-      real(wp) :: grown, pace
+      real(wp) :: grown
 
-      pace = maxval(abs(rates%motion))
       grown = 0.0_wp
-      if (result%pace > 0.0_wp) grown = sqrt(pace/result%pace) - 1.0_wp
+      if (result%haste > 0.0_wp) grown = haste/result%haste - 1.0_wp
       result%rest = 0.0_wp
       if (event%kind == event_kind%none .and. grown > 0.0_wp) &
          & result%rest = max(0.0_wp, result%step/grown - event%distance)
       result%step = event%distance
-      result%pace = pace
+      result%haste = haste
    end subroutine see_rest
 
    !> A motion beyond this is far
@@ -186,7 +201,7 @@ contains
          result%jump = [result%jump, result%reached]
          result%largest_jump = max(result%largest_jump, jump%way)
          result%reached = min(h_end, result%reached + gained)
-         result%pace = 0.0_wp
+         result%haste = 0.0_wp
          path%jumped = hypot(path%jumped, path%joints%force_unit*maxval(abs(state%force - before)))
          width = min(width, gained)
       else
