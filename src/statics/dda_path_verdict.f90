@@ -59,13 +59,14 @@ contains
          call follow_path(path, state, rate, 1.0_wp, result)
          call count_up(result, verdict)
          verdict%station = i - 1
-         verdict%share = result%reached
+         ! joints that crush bear more than where the last step ends
+         verdict%share = min(1.0_wp, result%reached + result%rest)
          verdict%jump = result%jump
          verdict%reach = result%reached + [-result%spread, result%spread]
          ! until it jumps the path goes one way
          if (verdict%n_jump == size(result%jump)) verdict%reach(1) = max(verdict%reach(1), &
             & minval([result%reached, result%jump]))
-         verdict%reach = max(0.0_wp, verdict%reach + [-result%rest, result%rest])
+         verdict%reach = max(0.0_wp, verdict%reach + [0.0_wp, 2.0_wp*result%rest])
       end do
       verdict%state = state
       call conclude(result, verdict)
