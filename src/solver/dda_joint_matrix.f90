@@ -90,8 +90,8 @@ contains
          other = 3 - one
          call add_product(n, row(:, :, one), stiffness, row(:, :, other), &
             & matrix%coupling(:, :, abs(entry)))
-         call add_product(n, row(:, :, other), stiffness, row(:, :, one), &
-            & matrix%upper(:, :, abs(entry)))
+         if (.not. matrix%symmetric) call add_product(n, row(:, :, other), stiffness, &
+            & row(:, :, one), matrix%upper(:, :, abs(entry)))
       else if (block(1) == block(2)) then
          do one = 1, 2
             call add_product(n, row(:, :, one), stiffness, row(:, :, 3 - one), &
