@@ -61,7 +61,7 @@ contains
       state%cone = cone_t(kind=cone_kind%no_slip)
       state%face%slip = 0
       state%unsettled_work = 0.0_wp
-      call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
+      call iterate_open_close(equations, springs, max_changes, state)
       if (.not. state%settled) return
       bound = coulomb_bound(springs, state)
       if (all(abs(state%force(3, :)) <= bound + tolerance &
@@ -92,7 +92,7 @@ contains
       least = huge(least)
       do correction = 1, max_corrections
          state%cone%limit = bound
-         call iterate_open_close(equations, springs, max_changes, state, one_by_one=.true.)
+         call iterate_open_close(equations, springs, max_changes, state)
          if (.not. state%settled) exit
          change = coulomb_bound(springs, state) - bound
          largest = maxval(abs(change))

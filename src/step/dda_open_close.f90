@@ -1,58 +1,43 @@
-!> Newton's method on the energy of a step with an exact line search
+!> The motion and the faces of one step by open-close iteration, Newton's method, interior point
 !>
-!> Equation (M1) of docs/method.md
-!>
-!> The open-close loop: an active-set method on the faces of the friction cones (Shi: df18 to df22)
-!>
-!> One step minimises a convex, piecewise quadratic energy. With the faces fixed the minimum is a
-!> linear system; each joint that disagrees with its face more than its neighbours do then changes
-!> it, as the simplex method pivots. Should a set of faces come again, only the worst joint does;
-!> should one come again then, Newton's method with an exact line search, which must end.
-!>
-!> Equation (M3) of docs/method.md
+!> One step minimises a convex, piecewise quadratic energy (M1); with faces fixed that is a linear
+!> system (M3). In chains joints that disagree with their faces more than their neighbours do
+!> change them (Shi: df18 to df22). Elsewhere Newton's method searches lines; where many faces are
+!> wrong these are mechanisms, which the next contact stops after a millionth of the way. Then
+!> the interior point comes near the minimum, from any beginning.
 module dda_open_close
-   use, intrinsic :: iso_fortran_env, only : int64
    use dda_assembly, only : refresh, solve_faces
-   use dda_bar_springs, only : bar_motion
+   use dda_bar_springs, only : acting, add_bars, bar_motion
    use dda_block_factor, only : substitute
+   use dda_contact_interior, only : max_convex_iterations, share
    use dda_contact_types, only : joint_springs_t
-   use dda_friction_cone, only : joint_face_t, project
+   use dda_coulomb_interior, only : absent, coulomb_iterate_t, coulomb_lack_t, coulomb_problem_t, &
+      & distances, find_lack, improve, mean_product
+   use dda_friction_cone, only : cone_kind, joint_face_t, project
+   use dda_joint_matrix, only : joint_matrix_t, lay_out_joints
    use dda_kinds, only : wp
    use dda_spring_products, only : relative_displacement
    use dda_step_state, only : disagreement, equations_t, force_noise, joint_forces, step_state_t
    implicit none
    private
 
-   public :: iterate_open_close, change_faces
+   public :: approach, iterate_open_close
 
-   !> Maximum number of Newton iterations; beyond, a shorter step is cheaper
-   integer, parameter :: max_newton = 80
-
-   !> Relative difference within which violations are equal
-   real(wp), parameter :: tie = 1.0e-9_wp
+   !> Solutions before the interior point, which needs some twenty itself from wherever it begins
+   integer, parameter :: few_passes = 20
    !> Least violation of a changing joint over the largest
    real(wp), parameter :: notable = 0.1_wp
-   !> Changes before Newton's method for assemblies other than chains
-   integer, parameter :: few_changes = 1
-
-   !> A line of motions
-   type :: line_t
-      real(wp), allocatable :: from(:, :)  !! Openings and slips where it begins: (3, n_joint) [m]
-      real(wp), allocatable :: rate(:, :)  !! Their growth by the whole way: (3, n_joint) [m]
-      real(wp) :: slope = 0.0_wp           !! Slope of the energy of blocks and bars where it begins
-      real(wp) :: curvature = 0.0_wp       !! Its growth by the whole way
-   end type line_t
 
 contains
 
    !> Newton's method on the step's energy from a motion, to the lowest point of each direction.
    !> That corrects what the blocks lack in balance, so that its rounding is small; a motion in
    !> balance is the answer even where rounding lets no face agree
-   pure subroutine iterate_newton(equations, springs, start, state)
+   pure subroutine iterate_newton(equations, springs, state)
       !> Blocks assembled; matrix and factor are made again
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
-      real(wp), intent(in) :: start(:, :)  !! The motion: (n_dof, n_equation)
+      !> The step; its motion is where the method begins and ends
       type(step_state_t), intent(inout) :: state
       type(joint_face_t) :: wanted(size(state%face))
       real(wp) :: gap(size(state%face)), from(size(state%motion, 1), size(state%motion, 2))
@@ -60,8 +45,7 @@ contains
       integer :: pass
       logical :: balanced
 
-      state%motion = start
-      do pass = 1, max_newton
+      do pass = 1, few_passes
          from = state%motion
          call joint_forces(springs, state)
          call find_unbalance(equations, springs, state, direction, balanced)
@@ -117,20 +101,30 @@ contains
       real(wp), intent(in) :: from(:, :), direction(:, :)
       !> 1 is the whole way
       real(wp) :: factor
-      type(line_t) :: line
-      real(wp) :: low, high, slope_low, slope_high, slope
+      real(wp), dimension(3, size(state%face)) :: begun, rate
+      real(wp) :: curvature, high, low, of_blocks, slope, slope_high, slope_low
       integer :: pass
 
-      line%from = relative_displacement(springs, from)
-      line%rate = relative_displacement(springs, direction)
-      call block_slope(equations, from, direction, line%slope, line%curvature)
-      call find_bracket(springs, state, line, low, high, slope_low, slope_high)
+      begun = relative_displacement(springs, from)
+      rate = relative_displacement(springs, direction)
+      of_blocks = sum(direction*(block_forces(equations, from) - equations%load))
+      curvature = sum(direction*block_forces(equations, direction))
+      low = 0.0_wp
+      slope_low = slope_at(low)
+      high = 1.0_wp
+      slope_high = slope_at(high)
+      do while (slope_high < 0.0_wp)
+         low = high
+         slope_low = slope_high
+         high = 2.0_wp*high
+         slope_high = slope_at(high)
+      end do
       factor = high
       do pass = 1, 60
          if (.not. slope_high > slope_low) exit
          factor = low - slope_low*(high - low)/(slope_high - slope_low)
          if (mod(pass, 3) == 0) factor = (low + high)/2.0_wp
-         slope = slope_at(springs, state, line, factor)
+         slope = slope_at(factor)
          if (slope < 0.0_wp) then
             low = factor
             slope_low = slope
@@ -138,120 +132,145 @@ contains
             high = factor
             slope_high = slope
          end if
-         if (high - low <= spacing(high) .or. abs(slope) <= epsilon(slope)*abs(line%slope)) exit
+         if (high - low <= spacing(high) .or. abs(slope) <= epsilon(slope)*abs(of_blocks)) exit
       end do
+
+   contains
+
+      !> Slope of the energy on the way
+      pure real(wp) function slope_at(way)
+         real(wp), intent(in) :: way  !! Distance along it
+         real(wp) :: force(3), shift(3)
+         type(joint_face_t) :: face
+         integer :: j
+
+         slope_at = of_blocks + way*curvature
+         do j = 1, size(rate, 2)
+            shift = springs%shift(:, j)
+            call project(state%cone(j), shift + state%trial(:, j) &
+               & - springs%stiffness(j)*(begun(:, j) + way*rate(:, j)), force, face)
+            slope_at = slope_at - dot_product(force - shift, rate(:, j))
+         end do
+      end function slope_at
    end function lowest_point
 
-   !> A part of the way at whose end the slope has risen above zero
-   pure subroutine find_bracket(springs, state, line, low, high, slope_low, slope_high)
-      type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(in) :: state
-      type(line_t), intent(in) :: line
-      real(wp), intent(out) :: low, high, slope_low, slope_high  !! Both ends, and the slopes there
-
-      low = 0.0_wp
-      slope_low = slope_at(springs, state, line, low)
-      high = 1.0_wp
-      slope_high = slope_at(springs, state, line, high)
-      do while (slope_high < 0.0_wp)
-         low = high
-         slope_low = slope_high
-         high = 2.0_wp*high
-         slope_high = slope_at(springs, state, line, high)
-      end do
-   end subroutine find_bracket
-
-   !> Slope of the energy on a line
-   pure function slope_at(springs, state, line, way) result(slope)
-      type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(in) :: state
-      type(line_t), intent(in) :: line
-      real(wp), intent(in) :: way  !! Distance along it
-      real(wp) :: slope, force(3), shift(3)
-      type(joint_face_t) :: face
-      integer :: j
-
-      slope = line%slope + way*line%curvature
-      do j = 1, size(line%rate, 2)
-         shift = springs%shift(:, j)
-         call project(state%cone(j), shift + state%trial(:, j) &
-            & - springs%stiffness(j)*(line%from(:, j) + way*line%rate(:, j)), force, face)
-         slope = slope - dot_product(force - shift, line%rate(:, j))
-      end do
-   end function slope_at
-
-   !> Slope of the energy of blocks and bars along a direction, and how it grows
-   pure subroutine block_slope(equations, from, direction, slope, curvature)
+   !> Forces by which blocks and bars resist a motion
+   pure function block_forces(equations, motion) result(force)
       type(equations_t), intent(in) :: equations
-      real(wp), intent(in) :: from(:, :), direction(:, :)
-      real(wp), intent(out) :: slope      !! The slope where the way begins
-      real(wp), intent(out) :: curvature  !! Its growth by the whole way
+      real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
+      real(wp) :: force(size(motion, 1), size(motion, 2))  !! The forces: (n_dof, n_equation)
       integer :: e
 
-      slope = sum(bar_motion(equations%bars, direction)*from)
-      curvature = sum(bar_motion(equations%bars, direction)*direction)
-      do e = 1, size(from, 2)
-         slope = slope + dot_product(direction(:, e), &
-            & matmul(equations%base(:, :, e), from(:, e)) - equations%load(:, e))
-         curvature = curvature + dot_product(direction(:, e), &
-            & matmul(equations%base(:, :, e), direction(:, e)))
+      force = bar_motion(equations%bars, motion)
+      do e = 1, size(motion, 2)
+         force(:, e) = force(:, e) + matmul(equations%base(:, :, e), motion(:, e))
       end do
-   end subroutine block_slope
+   end function block_forces
 
    !> Find the motion and the faces of one step
-   pure subroutine iterate_open_close(equations, springs, max_changes, state, one_by_one)
+   pure subroutine iterate_open_close(equations, springs, most, state)
       !> Blocks assembled; matrix and factor are made again
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(in) :: springs
-      !> Most changes of faces of a chain before Newton's method is used
-      integer, intent(in) :: max_changes
+      integer, intent(in) :: most  !! Most changes of the faces of a chain
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
-      !> True if only the joint that disagrees most changes its face, as it does after a repetition
-      logical, intent(in), optional :: one_by_one
       type(joint_face_t) :: wanted(size(state%face))
-      real(wp) :: gap(size(state%face)), best(size(state%motion, 1), size(state%motion, 2)), least
-      integer(int64) :: seen(max_changes + 1)
-      integer :: change, most, since
-      logical :: peaks
+      real(wp) :: gap(size(state%face))
+      integer :: pass
 
       call refresh(springs, equations)
-      most = merge(max_changes, min(max_changes, few_changes), equations%matrix%has_chains)
-      peaks = .true.
-      if (present(one_by_one)) peaks = .not. one_by_one
-      since = 1
-      best = 0.0_wp
-      least = huge(least)
-      do change = 1, most + 1
-         seen(change) = hash(state%face)
-         if (any(seen(since:change - 1) == seen(change))) then
-            if (.not. peaks) exit
-            peaks = .false.
-            since = change
-         end if
+      do pass = 1, merge(min(most, few_passes), 1, equations%matrix%has_chains)
          call keep_faces(equations, springs, state, gap, wanted)
          if (.not. equations%factor%usable) return
          if (state%settled) exit
-         if (maxval(gap) < least) best = state%motion
-         least = min(least, maxval(gap))
-         where (is_peak(equations, springs, gap, peaks)) state%face = wanted
+         where (is_peak(springs, gap, size(equations%load, 2))) state%face = wanted
       end do
-      if (.not. state%settled) call iterate_newton(equations, springs, best, state)
+      if (.not. state%settled) call iterate_newton(equations, springs, state)
+      if (.not. state%settled) then
+         call approach(equations, springs, state)
+         call iterate_newton(equations, springs, state)
+      end if
       if (state%settled) call joint_forces(springs, state)
    end subroutine iterate_open_close
 
-   !> Change the faces of a motion once: where to begin, if the motion is nearly that of a step
-   pure subroutine change_faces(equations, springs, state)
+   !> A motion near that of a step by the interior point (`dda_coulomb_interior`)
+   pure subroutine approach(equations, springs, state)
+      type(equations_t), intent(inout) :: equations
+      type(joint_springs_t), intent(in) :: springs
+      type(step_state_t), intent(inout) :: state  !! The step; its motion is set
+      type(coulomb_problem_t) :: q
+      type(coulomb_iterate_t) :: x
+      type(coulomb_lack_t) :: lack
+      type(joint_matrix_t) :: matrix
+      real(wp) :: length
+      integer :: pass
+
+      call pose_step(equations, springs, state, q)
+      call lay_out_joints(q%block, size(q%load, 1), size(q%load, 2), .true., matrix%matrix, &
+         & matrix%factor, matrix%entry)
+      x%motion = 0.0_wp*q%load
+      x%force = 0.0_wp*q%gap
+      x%slack = max(distances(q, x%force), equations%force_scale)
+      x%flow = merge(max(equations%force_scale*q%unit([1, 2, 3, 3], :), &
+         & maxval(abs(state%increment))), 0.0_wp, q%bounded)
+      do pass = 1, max_convex_iterations
+         if (mean_product(q, x%slack, x%flow) <= epsilon(1.0_wp)*equations%force_scale**2) exit
+         call find_lack(q, x, lack)
+         call improve(q, lack, share, matrix, x, length)
+         if (.not. matrix%factor%usable) exit
+         state%passes = state%passes + 1
+         equations%factorisations = equations%factorisations + 1
+      end do
+      state%motion = x%motion
+   end subroutine approach
+
+   !> The step as a problem of joints with compliance, behind which its bars stand as joints
+   !> without bounds
+   pure subroutine pose_step(equations, springs, state, q)
       type(equations_t), intent(in) :: equations
       type(joint_springs_t), intent(in) :: springs
-      type(step_state_t), intent(inout) :: state  !! The step; its faces are changed
-      type(joint_face_t) :: wanted(size(state%face))
-      real(wp) :: gap(size(state%face))
+      type(step_state_t), intent(in) :: state
+      type(coulomb_problem_t), intent(out) :: q
+      integer :: i, j, n
 
-      call disagreement(springs, state, gap, wanted)
-      if (maxval(gap) <= force_noise(equations, springs, state)) return
-      where (is_peak(equations, springs, gap, .true.)) state%face = wanted
-   end subroutine change_faces
+      n = size(state%cone)
+      associate (bars => equations%bars, more => size(equations%bars%trial))
+         q%base = equations%base
+         q%load = equations%load
+         call add_bars(bars, -1.0_wp, q%base, q%load)
+         q%load = equations%load
+         allocate (q%block(2, n + more), q%bounded(4, n + more))
+         allocate (q%row(size(q%load, 1), 3, 2, n + more), q%gap(3, n + more), &
+            & q%shift(3, n + more), q%friction(n + more), q%limit(n + more), source=0.0_wp)
+         allocate (q%soft(3, n + more), source=absent)
+         q%dilatancy = 1.0_wp
+         q%friction(:n) = state%cone%friction
+         q%limit(:n) = state%cone%limit
+         q%block(:, :n) = springs%equation
+         q%row(:, :, :, :n) = springs%row
+         q%shift(:, :n) = springs%shift
+         do j = 1, n
+            q%gap(:, j) = -state%trial(:, j)/springs%stiffness(j)
+            q%soft(:, j) = 1.0_wp/springs%stiffness(j)
+            q%bounded(:2, j) = state%cone(j)%kind /= cone_kind%mirror
+            q%bounded(3:, j) = state%cone(j)%kind == cone_kind%frictional
+            if (state%cone(j)%kind == cone_kind%mirror) q%soft(3, j) = absent
+            if (.not. state%cone(j)%single) cycle
+            q%bounded(2, j) = .false.
+            q%soft(2, j) = absent
+            q%shift(2, j) = 0.0_wp
+         end do
+         do i = 1, more
+            j = n + i
+            q%block(:, j) = bars%equation(:, i)
+            q%row(:, :2, :, j) = bars%row(:, :, :, i)
+            q%soft(:2, j) = 1.0_wp/max(acting(bars, i), tiny(1.0_wp))
+            q%bounded(:, j) = .false.
+         end do
+         q%unit = q%soft
+      end associate
+   end subroutine pose_step
 
    !> The motion if every joint keeps to its face, and whether all forces are admissible then
    pure subroutine keep_faces(equations, springs, state, gap, wanted)
@@ -270,44 +289,24 @@ contains
       state%settled = maxval(gap) <= force_noise(equations, springs, state)
    end subroutine keep_faces
 
-   !> Joints that disagree more than all others of their two blocks, or than all others
-   pure function is_peak(equations, springs, gap, of_blocks)
-      type(equations_t), intent(in) :: equations
+   !> Joints that disagree with their face as much as any other joint of their two blocks, and
+   !> notably beside all joints
+   pure function is_peak(springs, gap, n_equation)
       type(joint_springs_t), intent(in) :: springs
       real(wp), intent(in) :: gap(:)
-      logical, intent(in) :: of_blocks  !! True if other joints of its two blocks alone count
-      logical :: is_peak(size(gap))     !! The joints: (n_joint)
-      real(wp) :: highest, threshold
-      integer :: e, j, k, side
-
-      is_peak = gap >= (1.0_wp - tie)*maxval(gap)
-      if (.not. of_blocks) return
-      threshold = notable*maxval(gap)
-      do j = 1, size(gap)
-         is_peak(j) = gap(j) >= threshold
-         if (.not. is_peak(j)) cycle
-         highest = gap(j)
-         do side = 1, 2
-            e = springs%equation(side, j)
-            if (e == 0) cycle
-            do k = equations%first_joint(e), equations%first_joint(e + 1) - 1
-               highest = max(highest, gap(abs(equations%joint(k))))
-            end do
-         end do
-         is_peak(j) = gap(j) >= (1.0_wp - tie)*highest
-      end do
-   end function is_peak
-
-   !> Number that identifies a set of faces: the rest of their digits by a large prime
-   pure integer(int64) function hash(face)
-      type(joint_face_t), intent(in) :: face(:)  !! Faces: (n_joint)
-      integer(int64), parameter :: prime = 2_int64**47 - 115_int64
+      integer, intent(in) :: n_equation  !! Number of movable blocks
+      logical :: is_peak(size(gap))      !! The joints: (n_joint)
+      real(wp) :: highest(0:n_equation)
       integer :: j
 
-      hash = 0_int64
-      do j = 1, size(face)
-         hash = modulo(30011_int64*hash + face(j)%slip + 1 + merge(3, 0, face(j)%open(1)) &
-            & + merge(6, 0, face(j)%open(2)), prime)
+      highest = 0.0_wp
+      do j = 1, size(gap)
+         highest(springs%equation(:, j)) = max(highest(springs%equation(:, j)), gap(j))
       end do
-   end function hash
+      highest(0) = notable*maxval(gap)
+      do j = 1, size(gap)
+         is_peak(j) = gap(j) > 0.0_wp .and. gap(j) >= max(highest(0), &
+            & maxval(highest(springs%equation(:, j))))
+      end do
+   end function is_peak
 end module dda_open_close

@@ -10,7 +10,6 @@ module dda_step_interval
    use dda_friction_cone, only : cone_t, joint_face_t
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path, new_load_clock
-   use dda_open_close, only : change_faces
    use dda_settings, only : settings_t
    use dda_step_context, only : march_t, may_shorten, run_t, step_context_t, step_outcome_t
    use dda_step_state, only : equations_t
@@ -93,7 +92,6 @@ contains
             call fatal_error(error, "stiffness matrix is singular even with all joints closed")
             return
          end if
-         call change_faces(equations, springs, state)
          march%free_acceleration = free_acceleration(run%system, equations)
          march%last_acceleration = march%free_acceleration
          march%elastic_motion = elastic_motion(run)

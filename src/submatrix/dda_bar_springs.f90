@@ -13,7 +13,7 @@ module dda_bar_springs
    implicit none
    private
 
-   public :: bar_springs_t, bar_motion, add_bars, bar_energies, couple_bars, elongation_by
+   public :: bar_springs_t, acting, bar_motion, add_bars, bar_energies, couple_bars, elongation_by
    public :: follow_bars, judge_bars, keep_bars, longest_give, new_bar_springs
 
    !> Springs of all bars in a step; the first of two rows is along a bar, the second across it
