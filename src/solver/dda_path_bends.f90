@@ -232,7 +232,8 @@ contains
       type(event_t) :: event
       integer, parameter :: most_tries = 6
       real(wp) :: next
-      integer :: i, try
+      integer :: i, try, turn
+      logical :: slides
 
       whole = state
       share = 1.0_wp
@@ -256,13 +257,37 @@ contains
          do i = 1, size(state%slip)
             if (can_crush(path%joints, i)) call rest_on_strip(path%joints, i, state)
          end do
-         event = event_t(0.0_wp)
-         call walk(path, way, rates, share*whole%load, most_bend*maxval(abs(state%motion)), event, &
-            & state, next, settled)
-         if (settled) return
+         rates%face = whole%face
+         do turn = 1, most_turns
+            event = event_t(0.0_wp)
+            call walk(path, way, rates, share*whole%load, most_bend*maxval(abs(state%motion)), &
+               & event, state, next, settled)
+            if (.not. settled) exit
+            call let_slide(path%joints, state, rates%face(3, :), slides)
+            settled = .not. slides
+            if (settled) return
+         end do
          share = 0.1_wp*share
       end do
    end procedure begin_to_crush
+
+   !> Let joints slide whose shear forces are beyond friction: no event would find them
+   pure subroutine let_slide(joints, state, does, slides)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      integer(small), intent(inout) :: does(:)  !! States of the joints along themselves: (n_joint)
+      logical, intent(out) :: slides            !! True if there is one
+      integer :: j
+
+      slides = .false.
+      do j = 1, size(does)
+         if (does(j) /= face%stuck .or. joints%shear_role(j) /= shear_role%frictional) cycle
+         if (abs(state%force(3, j)) <= joints%graph%friction(j)*sum(state%force(:2, j)) &
+            & + weak_force) cycle
+         does(j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
+         slides = .true.
+      end do
+   end subroutine let_slide
 
    !> Least distance of a closed corner from its limit
    pure real(wp) function least_reserve(joints, state) result(least)

@@ -171,6 +171,19 @@ def test_rings_under_passive_fill_that_crush_are_found(tmp_path: Path) -> None:
     assert int(row["factorisations"]) < 60
 
 
+def test_joints_slide_within_friction_as_they_begin_to_crush(tmp_path: Path) -> None:
+    """Forces of a stable arch whose joints stick at their limit before they crush: |T| <= tan(47.93 deg) N."""
+    (row,) = rows(
+        tmp_path, "&arch shape = 'pointed', span = 2.4, voussoirs = 20, rise = 1.748, thickness = 0.225, rings = 3 /\n"
+        "&joint friction_deg = 47.93 /\n&material compressive_strength = 27480000 /\n", head="")
+    assert row["verdict"] == "stable"
+    joints = rows_of(tmp_path / "x" / "joints.csv")
+    largest = max(float(joint["normal_force"]) for joint in joints)
+    for joint in joints:
+        bound = math.tan(math.radians(47.93)) * float(joint["normal_force"])
+        assert abs(float(joint["shear_force"])) <= bound + 1e-9 * largest
+
+
 def test_great_strengths_are_none(tmp_path: Path) -> None:
     bridge = BRIDGE.format(shape="segmental", rise=2.5)
     (bare,) = rows(tmp_path, bridge + "&material unit_weight = 2e4 /\n", head="")
