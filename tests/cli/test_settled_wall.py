@@ -140,3 +140,18 @@ def test_what_nothing_resists_keeps_its_speed(tmp_path: Path, speed: float) -> N
               + "measure 0.5 0.5\n")
     rows, _ = run(tmp_path, blocks, 0.0, 0.2)
     assert float(rows[-1]["u"]) == pytest.approx(0.2 * speed, rel=1e-6)
+
+
+def test_a_wall_pushed_beyond_its_limit_falls_without_creeping(tmp_path: Path) -> None:
+    """Static steps settle as the wall falls; where their search creeps, they are cut: it takes 43 of them."""
+    (tmp_path / "x.blocks").write_text(wall(8, 6))
+    rows = {}
+    for name, keys in (
+        ("limit", "&search parameter = 'horizontal_coefficient' /\n&analysis flow = 'associated' /\n"),
+        ("fall", "&load horizontal_coefficient = 0.6 /\n"
+                 "&analysis flow = 'associated', geometry = 'current', unknowns = 3 /\n")):
+        run_deck(tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = 33 /\n" + keys,
+                 "--quiet", "--out", name)
+        (rows[name],) = rows_of(tmp_path / name / "results.csv")
+    assert 0.55 < float(rows["limit"]["critical"]) < 0.6
+    assert rows["fall"]["verdict"] == "collapsed" and int(rows["fall"]["steps"]) < 10
