@@ -242,6 +242,37 @@ def test_what_slides_as_it_falls_has_the_friction_of_the_corner_that_presses(tmp
         assert abs(float(row["shear_force"])) <= float(row["normal_force"]) * (1 + 1e-12)
 
 
+#: A search whose loading path ends by a jump, so that its bracket is 15 % wide
+WIDE_BRACKET = """&arch shape = 'parabolic', span = 2.443, voussoirs = 17, rise = 1.384, thickness = 0.09879,
+    joint_direction = 'radial', rings = 3, buttress_width = 0.6802, buttress_height = 1.466 /
+&joint friction_deg = 64.02 /
+&fill height = 0.2716, unit_weight = 15990.0, passive_coefficient = 2.886, backing_height = 0.4636 /
+&material unit_weight = 24090.0 /
+&vehicle axles = 78210.0, 94980.0, 61710.0, 21080.0, 117800.0, spacings = 1.427, 0.2784, 0.8948, 0.3769,
+    length = 0.0, position = -0.2442 /
+&search parameter = 'load_factor' /
+&analysis flow = 'coulomb' /
+"""
+
+
+def test_forces_balance_the_loads_at_one_place_of_a_wide_bracket(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A joint force that is off by 1e-4 of itself is found, although the loads at the two ends differ by 1.7 %."""
+    folder = run_deck(tmp_path, WIDE_BRACKET)
+    assert main(["verify", str(folder), "--ignore-sums"]) == 0, capsys.readouterr().out
+    rows = rows_of(folder / "joints.csv")
+    largest = max(rows, key=lambda row: float(row["normal_force"]))
+    for name in ("force_x", "force_y", "normal_force", "shear_force"):
+        largest[name] = repr(float(largest[name]) * (1 + 1e-4))
+    with (folder / "joints.csv").open("w", newline="") as lines:
+        writer = csv.DictWriter(lines, list(largest), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    assert main(["verify", str(folder), "--ignore-sums"]) == 1
+    assert "balance (joints.csv)" in capsys.readouterr().out
+
+
 def test_stages_that_were_left_out_are_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = run_deck(tmp_path, HEAD, PILLARS + "remove block 3 at 1\nremove block 4 at 2\n")
     results = (folder / "results.csv").read_text()

@@ -26,14 +26,14 @@ NONE = 1e-12
 
 
 def check_joints(
-    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, allowed: np.ndarray, off: float
+    scene: Scene, rows: list[Row], bars: list[float] | None, finding: Finding, change: np.ndarray, off: float
 ) -> None:
     """Check that forces of joints.csv obey the law of every joint, and balance the loads of stable cases.
 
-    `bars` are forces of bars.csv, None where forces need not balance; `allowed` (n, 3) is their permitted imbalance
-    besides, from the width of the bracket of a search, and `off` the distance of corners between its ends [m].
+    `bars` are forces of bars.csv, None where forces need not balance; `change` (n, 3) is that of the loads from the
+    stable end of the bracket of a search to its value, between which forces balance them, and `off` the distance of
+    corners between its ends [m].
     """
-    allowed = allowed.copy()
     rounding = [off + rounding_of(block) for block in scene.blocks]
     left = loads_on(scene.deck, scene.source, scene.blocks)
     held = {place.block for place in scene.source.held}  # 0 for any block
@@ -41,7 +41,8 @@ def check_joints(
     size = sizes_on(scene.deck, scene.source, scene.blocks)
     largest = largest_of(size[free], scene.length) if free.any() else 1.0
     # a force that is off by a share of the largest load turns a thin block by its arm, many times the joint's length
-    allowed[:, 2] += [SETTLED * largest * reach_of(block) for block in scene.blocks]
+    allowed = np.zeros_like(left)
+    allowed[:, 2] = [SETTLED * largest * reach_of(block) for block in scene.blocks]
     pairs, digits = numbers_of(scene.joints), 0.0
     for pull, force in zip([pull for pull in scene.pulls if pull.kind == "bar"], bars or []):
         beyond = max(-force, 0.0 if pull.most is None else force - float(pull.most), 0.0)
@@ -78,12 +79,26 @@ def check_joints(
             allowed[number - 1, 2] += float(np.linalg.norm(vector)) * rounding[number - 1]
     if bars is None:
         return
-    for block in scene.blocks:
-        if free[block.number - 1]:
-            _lean(left, block, [pull for pull in scene.pulls if pull.kind == "bounded"], scene.length)
     if free.any():
-        finding.keep("balance (joints.csv)", largest_of(left[free], scene.length) / largest,
+        finding.keep("balance (joints.csv)", _imbalance(scene, left, change, free) / largest,
                      WRITTEN + digits + largest_of(allowed[free], scene.length) / largest)
+
+
+def _imbalance(scene: Scene, left: np.ndarray, change: np.ndarray, free: np.ndarray) -> float:
+    """Least imbalance of `free` blocks on which `left` (n, 3) is left at one end of a bracket, or up to its value.
+
+    The force of what blocks lean against is not written: where there is none, the place between is known.
+    """
+    size = float((change[free] ** 2).sum())
+    between = min(max(-float((left[free] * change[free]).sum()) / size, 0.0), 1.0) if size > 0.0 else 0.0
+    least = math.inf
+    for share in {0.0, between, 1.0}:
+        there = left + share * change
+        for block in scene.blocks:
+            if free[block.number - 1]:
+                _lean(there, block, [pull for pull in scene.pulls if pull.kind == "bounded"], scene.length)
+        least = min(least, largest_of(there[free], scene.length))
+    return least
 
 
 def _lean(left: np.ndarray, block: Block, pulls: list[Pull], length: float) -> None:
