@@ -43,8 +43,6 @@ module dda_compute_case
    type :: least_factor_t
       real(wp) :: factor = no_limit  !! The factor
       real(wp) :: place = 0.0_wp     !! The place [m]
-      !> The least associated limit where paths are followed: no path is bounded by less
-      real(wp) :: limit = 0.0_wp
       logical :: backward = .false.  !! True if the vehicle drives the other way there
       !> True if the loading path there has an end; else the factor is how far it came
       logical :: decided = .true.

@@ -177,7 +177,8 @@ contains
       if (size(change) == 3) usual = sum(change) - usual - minval(change)
    end function usual
 
-   !> Follow the loading path of a position, no farther than matters
+   !> Follow the loading path of a position, no farther than matters. Its associated limit, which
+   !> takes longer than the path, is sought only if the path ends before all others
    module procedure try_place
       type(critical_t) :: critical
       type(search_t) :: search
@@ -188,19 +189,12 @@ contains
       if (least%factor < no_limit .and. reach*least%factor > search%low) &
          & search%high = min(search%high, reach*least%factor)
       search%start = min(search%start, search%high)
-      search%below_limit = search%high < least%limit
-      call find_critical(this%family, search, critical)
-      select case (critical%verdict)
-      case (verdict%found)
-         factor = critical%stop
-      case (verdict%stable)
-         factor = search%high
-         if (.not. search%high < this%search%high) factor = no_limit
-      case (verdict%collapsed)
-         factor = 0.0_wp
-      case default
-         factor = critical%undecided_at
-      end select
+      search%below_limit = search%high < this%search%high
+      call find_end(this, search, critical, factor)
+      if (search%below_limit .and. factor < least%factor) then
+         search%below_limit = .false.
+         call find_end(this, search, critical, factor)
+      end if
       if (present(trial)) then
          trial%place = place
          trial%inverse = 1.0_wp/max(factor, tiny(factor))
@@ -214,8 +208,29 @@ contains
       least%place = place
       least%decided = critical%verdict /= verdict%undecided
       if (allocated(least%critical)) deallocate (least%critical)
-      if (.not. search%below_limit) allocate (least%critical, source=critical)
+      allocate (least%critical, source=critical)
    end procedure try_place
+
+   !> Find the load factor at which a path ends
+   pure subroutine find_end(this, search, critical, factor)
+      type(case_t), intent(in) :: this
+      type(search_t), intent(in) :: search
+      type(critical_t), intent(out) :: critical
+      real(wp), intent(out) :: factor  !! The factor
+
+      call find_critical(this%family, search, critical)
+      select case (critical%verdict)
+      case (verdict%found)
+         factor = critical%stop
+      case (verdict%stable)
+         factor = search%high
+         if (.not. search%high < this%search%high) factor = no_limit
+      case (verdict%collapsed)
+         factor = 0.0_wp
+      case default
+         factor = critical%undecided_at
+      end select
+   end subroutine find_end
 
    !> Try the mirrored position of a bridge of equal halves, with the vehicle turned round. A
    !> vehicle that is its own mirror image stands at the same position in both directions

@@ -123,7 +123,6 @@ contains
       logical :: known
 
       known = least%factor < no_limit
-      least%limit = least%factor
       least%factor = no_limit
       if (.not. known) return
       if (least%backward) call turn_round(this%family%deck)
