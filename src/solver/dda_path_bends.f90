@@ -40,14 +40,13 @@ contains
       do try = 1, most_tries
          call walk(path, way, rates, last%load, most_bend*event%distance &
             & *maxval(abs(rates%motion)), event, state, next, found)
-         if (found) then
-            aim = passed_limit(path%joints, last, state, rates, event)
-            found = .not. aim%distance < event%distance
-            if (found) exit
-            event = aim
-         else
-            event = event_t(next)
-         end if
+         aim = event_t(next)
+         if (found) aim = passed_limit(path%joints, last, state, rates, event)
+         ! an event may lie farther away than its rates lead to
+         if (aim%distance > longest) aim = event_t(longest)
+         found = found .and. .not. aim%distance < event%distance
+         if (found) exit
+         event = aim
          if (event%distance < no_way) exit
          state = last
       end do

@@ -273,6 +273,26 @@ def test_forces_balance_the_loads_at_one_place_of_a_wide_bracket(
     assert "balance (joints.csv)" in capsys.readouterr().out
 
 
+#: An axle all but above the crown of an arch that crushes
+CRUSHING_ARCH = """&arch shape = 'basket', span = 5.893, voussoirs = 25, rise = 2.089, thickness = 0.3525 /
+&joint friction_deg = 25 /
+&fill height = 0.4747, unit_weight = 20540.0, backing_height = 1.201 /
+&material compressive_strength = 16030000.0 /
+&vehicle axles = 80390.0, length = 0.3, position = -1e-9 /
+&analysis flow = 'coulomb' /
+&load load_factor = {} /
+"""
+
+
+@pytest.mark.parametrize("factor", [1.9, 2.0, 2.01618])
+def test_the_path_of_joints_that_crush_ends_where_its_load_does(tmp_path: Path, factor: float) -> None:
+    """An event that lies farther than its rates told leads no farther than the load."""
+    folder = run_deck(tmp_path, CRUSHING_ARCH.format(factor))
+    (row,) = rows_of(folder / "results.csv")
+    assert row["verdict"] == "stable"
+    assert main(["verify", str(folder), "--quiet"]) == 0
+
+
 def test_stages_that_were_left_out_are_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = run_deck(tmp_path, HEAD, PILLARS + "remove block 3 at 1\nremove block 4 at 2\n")
     results = (folder / "results.csv").read_text()
