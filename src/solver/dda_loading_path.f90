@@ -16,9 +16,10 @@
 !> Equation (M4) of docs/method.md
 module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
-   use dda_coulomb_joints, only : coulomb_joints_t, in_metres, in_motion_units, in_newtons, &
-      & in_units, set_force_unit, take_coulomb_joints
-   use dda_coulomb_law, only : coulomb_state_t, unloaded_state
+   use dda_coulomb_joints, only : coulomb_joints_t, end_role, in_metres, in_motion_units, &
+      & in_newtons, in_units, set_force_unit, shear_role, take_coulomb_joints
+   use dda_coulomb_law, only : coulomb_state_t, imbalance, strength, unloaded_state
+   use dda_crushed_joint, only : reserve
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
    use dda_load_jump, only : balance_rest, far_factor, jump_t, motion_end, moves_unbalanced
@@ -37,6 +38,7 @@ module dda_loading_path
       integer :: unsettled_motion = 3  !! A motion at a fixed load did not settle
       integer :: too_many = 4          !! Too many events
       integer :: too_costly = 5        !! Too many factorisations
+      integer :: no_balance = 6        !! Forces at its end break a law or do not balance the load
    end type path_reason_enum
 
    !> Names of the reasons
@@ -97,6 +99,8 @@ module dda_loading_path
 
    !> Least damping above round-off
    real(wp), parameter :: least_damping = 1.1e-14_wp
+   !> Imbalance and violation of a law over the largest force of a state that is an answer
+   real(wp), parameter :: negligible = 1.0e-9_wp
    !> Maximum number of factorisations, plus one per joint
    integer, parameter :: least_factorisations = 10000
 
@@ -205,7 +209,7 @@ contains
          if (.not. settled) end = motion_end%unsettled
       end if
       if (end /= motion_end%balanced) call note_fall(end, jump, result)
-      if (result%end == path_end%reached) call balance_rest(path%joints, path%equations, state)
+      if (result%end == path_end%reached) call end_in_balance(path, state, result)
       call finish(path, state, result)
       if (result%end /= path_end%reached .or. .not. share < 1.0_wp) return
       rate%load = dead_load - state%load
@@ -225,7 +229,7 @@ contains
       real(wp), intent(in) :: h_end
       type(path_result_t), intent(out) :: result
       type(path_rate_t) :: way
-      real(wp) :: first(3, size(rate%load, 2)), before(3, size(state%force, 2)), strength
+      real(wp) :: first(3, size(rate%load, 2)), before(3, size(state%force, 2)), scale
 
       allocate (result%jump(0))
       path%equations%base%n_factorisation = 0
@@ -237,16 +241,16 @@ contains
       state%gap = state%gap/path%joints%motion_unit
       state%slip = state%slip/path%joints%motion_unit
       way%load = in_units(path%joints, rate%load)
-      strength = maxval(abs(way%load))
+      scale = maxval(abs(way%load))
       if (allocated(rate%opening)) then
          way%opening = rate%opening/path%joints%motion_unit
-         strength = max(strength, maxval(maxval(abs(way%opening), 1)/path%joints%graph%compliance))
+         scale = max(scale, maxval(maxval(abs(way%opening), 1)/path%joints%graph%compliance))
       end if
       first = state%load
       before = state%force
-      if (strength > 0.0_wp) then
-         way%load = plain(way%load/strength)
-         if (allocated(way%opening)) way%opening = plain(way%opening/strength)
+      if (scale > 0.0_wp) then
+         way%load = plain(way%load/scale)
+         if (allocated(way%opening)) way%opening = plain(way%opening/scale)
       end if
       if (.not. path%softness > 0.0_wp) then
          path%softness = max(1.0_wp, &
@@ -254,14 +258,14 @@ contains
          path%given = maxval(state%gap)
       end if
       if (allocated(way%opening)) &
-         & path%given = path%given + strength*h_end*maxval(abs(way%opening))
+         & path%given = path%given + scale*h_end*maxval(abs(way%opening))
       result%end = path_end%reached
-      if (strength > 0.0_wp) then
+      if (scale > 0.0_wp) then
          call see_softness(path%joints, path%equations, way%load, state)
-         call follow(path, first, way, strength*h_end, state, result)
-         result%reached = result%reached/strength
-         result%jump = result%jump/strength
-         result%rest = result%rest/strength
+         call follow(path, first, way, scale*h_end, state, result)
+         result%reached = result%reached/scale
+         result%jump = result%jump/scale
+         result%rest = result%rest/scale
          associate (change => path%joints%force_unit*maxval(abs(state%force - before)))
             result%spread = result%reached*path%jumped/max(change, epsilon(change)*path%jumped, &
                & tiny(change))
@@ -269,11 +273,50 @@ contains
       end if
       if (result%end == path_end%reached) then
          result%reached = h_end
-         if (strength > 0.0_wp) state%load = first + h_end*in_units(path%joints, rate%load)
+         if (scale > 0.0_wp) state%load = first + h_end*in_units(path%joints, rate%load)
       end if
-      call balance_rest(path%joints, path%equations, state)
+      call end_in_balance(path, state, result)
       call finish(path, state, result)
    end subroutine follow_path
+
+   !> Remove what is unbalanced by rounding, and check that forces balance the load and obey the
+   !> laws of their joints: else there is no answer
+   pure subroutine end_in_balance(path, state, result)
+      type(loading_path_t), intent(inout) :: path
+      type(coulomb_state_t), intent(inout) :: state
+      type(path_result_t), intent(inout) :: result
+      real(wp) :: rest(3, size(state%load, 2))
+
+      call balance_rest(path%joints, path%equations, state)
+      if (result%end == path_end%undecided) return
+      ! joints that break as it falls carried more before
+      if (result%end == path_end%collapsed .and. allocated(state%whole)) return
+      call imbalance(path%joints, state%load, state%force, rest)
+      if (max(maxval(abs(rest)), violation(path%joints, state)) &
+         & <= negligible*max(1.0_wp, maxval(abs(state%force)))) return
+      result%end = path_end%undecided
+      result%reason = path_reason%no_balance
+   end subroutine end_in_balance
+
+   !> Largest force of a state that its joint does not bear: a pull beyond the strength of a corner,
+   !> pressure beyond a strip that crushes, shear beyond friction and cohesion
+   pure real(wp) function violation(joints, state)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      real(wp) :: bond(3)
+      integer :: i, j
+
+      violation = 0.0_wp
+      do j = 1, size(state%force, 2)
+         bond = strength(joints, state, j)
+         do i = 1, 2
+            if (joints%end_role(i, j) /= end_role%contact) cycle
+            violation = max(violation, -reserve(joints, j, i, state%force(:2, j)) - bond(i))
+         end do
+         if (joints%shear_role(j) == shear_role%frictional) violation = max(violation, &
+            & abs(state%force(3, j)) - joints%graph%friction(j)*sum(state%force(:2, j)) - bond(3))
+      end do
+   end function violation
 
    !> Numbers without their last digits, which rounding sets: ways to different ends are one way
    elemental real(wp) function plain(x)

@@ -101,6 +101,8 @@ contains
          verdict%reason = "the loading path has too many jumps"
       else if (result%end == path_end%undecided .and. result%reason == path_reason%too_costly) then
          verdict%reason = "the loading path takes too many factorisations"
+      else if (result%end == path_end%undecided .and. result%reason == path_reason%no_balance) then
+         verdict%reason = "forces at the end of the loading path do not balance or break a law"
       else if (result%end == path_end%undecided) then
          verdict%reason = "a jump on the loading path does not converge"
       end if
