@@ -6,7 +6,7 @@
 submodule (dda_loading_path:dda_path_steps) dda_path_bends
    use dda_crushed_joint, only : bear_side, can_crush, reserve
    use dda_coulomb_joints, only : end_role, shear_role
-   use dda_coulomb_law, only : face, imbalance, normal_forces, spring_forces
+   use dda_coulomb_law, only : face, imbalance, normal_forces, shear_face, spring_forces
    use dda_event_rates, only : solve_rates, weak_force
    use dda_kinds, only : small
    use dda_path_event, only : go_ahead, left_to_event
@@ -232,7 +232,7 @@ contains
       integer, parameter :: most_tries = 6
       real(wp) :: next
       integer :: i, try, turn
-      logical :: slides
+      logical :: gives
 
       whole = state
       share = 1.0_wp
@@ -262,31 +262,39 @@ contains
             call walk(path, way, rates, share*whole%load, most_bend*maxval(abs(state%motion)), &
                & event, state, next, settled)
             if (.not. settled) exit
-            call let_slide(path%joints, state, rates%face(3, :), slides)
-            settled = .not. slides
+            call give_way(path%joints, state, rates%face, gives)
+            settled = .not. gives
             if (settled) return
          end do
          share = 0.1_wp*share
       end do
    end procedure begin_to_crush
 
-   !> Let joints slide whose shear forces are beyond friction: no event would find them
-   pure subroutine let_slide(joints, state, does, slides)
+   !> Let corners open and joints slide whose forces are beyond their limits: no event would find
+   !> them
+   pure subroutine give_way(joints, state, faces, gives)
       type(coulomb_joints_t), intent(in) :: joints
       type(coulomb_state_t), intent(in) :: state
-      integer(small), intent(inout) :: does(:)  !! States of the joints along themselves: (n_joint)
-      logical, intent(out) :: slides            !! True if there is one
-      integer :: j
+      integer(small), intent(inout) :: faces(:, :)  !! States of corners and joints: (3, n_joint)
+      logical, intent(out) :: gives                 !! True if there is one
+      integer :: i, j
 
-      slides = .false.
-      do j = 1, size(does)
-         if (does(j) /= face%stuck .or. joints%shear_role(j) /= shear_role%frictional) cycle
+      gives = .false.
+      do j = 1, size(faces, 2)
+         do i = 1, 2
+            if (joints%end_role(i, j) /= end_role%contact .or. faces(i, j) == face%open) cycle
+            if (reserve(joints, j, i, state%force(:2, j)) >= -weak_force) cycle
+            faces(i, j) = face%open
+            gives = .true.
+         end do
+         faces(3, j) = shear_face(joints, j, faces(:2, j), faces(3, j))
+         if (faces(3, j) /= face%stuck .or. joints%shear_role(j) /= shear_role%frictional) cycle
          if (abs(state%force(3, j)) <= joints%graph%friction(j)*sum(state%force(:2, j)) &
             & + weak_force) cycle
-         does(j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
-         slides = .true.
+         faces(3, j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
+         gives = .true.
       end do
-   end subroutine let_slide
+   end subroutine give_way
 
    !> Least distance of a closed corner from its limit
    pure real(wp) function least_reserve(joints, state) result(least)

@@ -184,6 +184,26 @@ def test_joints_slide_within_friction_as_they_begin_to_crush(tmp_path: Path) -> 
         assert abs(float(joint["shear_force"])) <= bound + 1e-9 * largest
 
 
+@pytest.mark.parametrize("groups, falls", [
+    ("&arch shape = 'circular', span = 4.022, voussoirs = 15, rise = 1.654, thickness = 0.2274, rings = 4 /\n"
+     "&joint friction_deg = 50.31 /\n&fill height = 0.1053, unit_weight = 16040.0 /\n"
+     "&material compressive_strength = 425400.0 /\n&vehicle axles = 19490.0, 29650.0, spacings = 1.275, "
+     "length = 0.0, position = 0.1965 /\n", True),
+    ("&arch shape = 'pointed', span = 2.565, voussoirs = 18, rise = 1.878, thickness = 0.1559, right_rise = 2.251, "
+     "spans = 2, pier_width = 0.4258, pier_height = 1.129, rings = 4 /\n&fill height = 0.3487, unit_weight = 18980.0, "
+     "passive_coefficient = 1.819, backing_height = 0.6846 /\n&material compressive_strength = 10940000.0, "
+     "unit_weight = 16500.0 /\n&vehicle axles = 80780.0, 22170.0, 49710.0, spacings = 1.263, 1.282, "
+     "length = 0.1651, position = 0.4687 /\n", False),
+])
+def test_corners_that_hardly_bear_open_as_their_joints_begin_to_crush(
+    tmp_path: Path, groups: str, falls: bool
+) -> None:
+    """The path begins with forces within the strips of all joints: else its end would be undecided."""
+    (row,) = rows(tmp_path, groups + "&analysis flow = 'coulomb' /\n" + SEARCH, head="")
+    assert row["verdict"] == ("collapsed" if falls else "found")
+    assert falls or float(row["critical"]) < float(row["exact_high"])
+
+
 def test_great_strengths_are_none(tmp_path: Path) -> None:
     bridge = BRIDGE.format(shape="segmental", rise=2.5)
     (bare,) = rows(tmp_path, bridge + "&material unit_weight = 2e4 /\n", head="")
