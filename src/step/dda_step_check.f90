@@ -80,7 +80,8 @@ contains
    !> separate, or has let one enter. Axes are then chosen again by the motion. If blocks still
    !> enter one another, the step is cut; if some are still held off without contact, that is
    !> accepted. A step that ends at a line is cut if another line separates the blocks there: they
-   !> do not meet, and after a shorter step both lines separate them
+   !> do not meet, and after a shorter step both lines separate them. If they do not, because the
+   !> blocks were level with the line from the start, axes are chosen again
    pure type(step_outcome_t) function check_axes(run) result(outcome)
       type(run_t), intent(in) :: run
       real(wp) :: before, contact_gap, gap, level, matters
@@ -113,7 +114,8 @@ contains
             end associate
          end do
          outcome%dt = step%dt
-         outcome%wrong_axes = (entered .or. held_off) .and. step%choices < max_choices
+         outcome%wrong_axes = (entered .or. held_off .or. replaced .and. step%was_cut) &
+            & .and. step%choices < max_choices
          outcome%accepted = .not. outcome%wrong_axes
          if (outcome%accepted .and. (entered .or. replaced) .and. may_shorten(run)) &
             & outcome = half_step(run)
