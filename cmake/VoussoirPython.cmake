@@ -101,8 +101,7 @@ function(voussoir_add_python)
   # f2py only writes the C and Fortran of the wrapper; CMake compiles them.
   set(theory "${VOUSSOIR_SOURCE_ROOT}/src/theory")
   set(generated "${CMAKE_CURRENT_BINARY_DIR}/f2py")
-  set(api "${theory}/theory_api.f90" "${theory}/theory_equations_api.f90"
-    "${theory}/theory_discrete_api.f90")
+  set(api "${theory}/theory_api.f90")
   file(MAKE_DIRECTORY "${generated}")
   execute_process(
     COMMAND "${VOUSSOIR_PYTHON}" -c "import numpy.f2py; print(numpy.f2py.get_include())"

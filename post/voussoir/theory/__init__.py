@@ -19,13 +19,15 @@ Examples
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
-from voussoir._theory import theory_api, theory_discrete_api, theory_equations_api
-from voussoir.theory._columns import HALF_ANGLE, JOINT, THEORIES, THICKNESS, Value, evaluate, theory_number
+from voussoir._theory import theory_api
+from voussoir.theory._columns import HALF_ANGLE, JOINT, THEORIES, THICKNESS, Range, Value, evaluate, theory_number
 from voussoir.theory._discrete import DiscreteSolution, discrete_critical, discrete_solution
 
 __all__ = [
@@ -83,24 +85,25 @@ def critical(alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
     ValueError
         If an angle is outside the range of the theory.
     """
-    return _critical(theory_api.critical, alpha, theory)
+    return _critical("critical", alpha, theory)
 
 
 def critical_as_printed(alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
     """The same as `critical` by eqs. (1), (23), (24) as printed; shallow arches lose their digits."""
-    return _critical(theory_api.critical_as_printed, alpha, theory)
+    return _critical("critical_as_printed", alpha, theory)
 
 
 def critical_small(alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
     """The same as `critical` by power series for small half angles; at 0.1 rad they hold eleven digits."""
-    return _critical(theory_api.critical_small, alpha, theory)
+    return _critical("critical_small", alpha, theory)
 
 
 def critical_near_limit(distance: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
     """Leading terms of `critical` at a distance alpha_limit - alpha from the limit of the theory [rad]."""
-    wanted = "a distance in [0, alpha_limit) rad"
-    routine = theory_api.critical_near_limit
-    beta, eta, h = evaluate(routine, {"distance": distance}, [wanted], theory_number(theory), results=3)
+    number = theory_number(theory)
+    limit = _alpha_limit(number)
+    wanted = Range("a distance in [0, alpha_limit) rad", lambda given, _: (given >= 0.0) & (given < limit))
+    beta, eta, h = evaluate("critical_near_limit", number, {"distance": distance}, {"distance": wanted}, 3)
     return beta, eta, h
 
 
@@ -121,20 +124,18 @@ def equilibrium_thickness(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str
     array or float
         eta(beta); its top is the critical thickness of CCR and Milankovitch.
     """
-    arguments = {"beta": beta, "alpha": alpha}
-    return evaluate(theory_api.curve, arguments, [JOINT, _embraced(theory)], theory_number(theory))[0]
+    return _on_curve("equilibrium_thickness", beta, alpha, theory)
 
 
 def initial_thickness(alpha: npt.ArrayLike, theory: str) -> Value:
     """Start eta_0 of the equilibrium curve at the crown, zero where A >= 1: eqs. (15), (26)."""
-    arguments = {"alpha": alpha}
-    return evaluate(theory_api.curve_start, arguments, [_embraced(theory)], theory_number(theory))[0]
+    number = theory_number(theory)
+    return evaluate("initial_thickness", number, {"alpha": alpha}, {"alpha": _embraced(theory)})[0]
 
 
 def curve_slope(beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value:
     """Slope d eta/d beta of the equilibrium curve [1/rad], arguments as of `equilibrium_thickness`: eq. (19)."""
-    arguments = {"beta": beta, "alpha": alpha}
-    return evaluate(theory_api.slope, arguments, [JOINT, _embraced(theory)], theory_number(theory))[0]
+    return _on_curve("curve_slope", beta, alpha, theory)
 
 
 def thrust_line(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
@@ -142,9 +143,15 @@ def thrust_line(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, t
 
     The ratio is -1 at the extrados and 1 at the intrados; eta in (0, 2) must be thick enough for a thrust h2 > 0.
     """
+    number = theory_number(theory)
+
+    def has_thrust(eta: Any, given: Mapping[str, Any]) -> Any:
+        places = np.array([given["alpha"], eta]).reshape(2, -1).T
+        return THICKNESS.holds(eta, given) & (theory_api.formula(1, "springing_thrust", number, places)[:, 0] > 0.0)
+
     arguments = {"beta": beta, "alpha": alpha, "eta": eta}
-    ranges = [JOINT, HALF_ANGLE, THICKNESS + " with a thrust"]
-    return evaluate(theory_api.line, arguments, ranges, theory_number(theory))[0]
+    ranges = {"alpha": HALF_ANGLE, "beta": JOINT, "eta": Range(THICKNESS.words + " with a thrust", has_thrust)}
+    return evaluate("thrust_line", number, arguments, ranges)[0]
 
 
 def eccentricity(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, h: npt.ArrayLike, theory: str) -> Value:
@@ -153,14 +160,14 @@ def eccentricity(beta: npt.ArrayLike, alpha: npt.ArrayLike, eta: npt.ArrayLike, 
     The ratio is -1 at the extrados and 1 at the intrados; alpha, in (0, pi), does not change it.
     """
     arguments = {"beta": beta, "alpha": alpha, "eta": eta, "h": h}
-    ranges = [JOINT, HALF_ANGLE, THICKNESS, "a positive thrust"]
-    return evaluate(theory_equations_api.joint_eccentricity, arguments, ranges, theory_number(theory))[0]
+    thrust = Range("a positive thrust", lambda h, _: (h > 0.0) & (h < math.inf))
+    ranges = {"alpha": HALF_ANGLE, "beta": JOINT, "eta": THICKNESS, "h": thrust}
+    return evaluate("eccentricity", theory_number(theory), arguments, ranges)[0]
 
 
 def embrace(alpha: npt.ArrayLike) -> Value:
     """The group A = alpha cot(alpha/2) of an angle in (0, pi) [rad], from 2 down to 0: eq. (9)."""
-    arguments = {"alpha": alpha}
-    return evaluate(theory_equations_api.group_a, arguments, [HALF_ANGLE])[0]
+    return evaluate("embrace", 1, {"alpha": alpha}, {"alpha": HALF_ANGLE})[0]
 
 
 def thrust_through(beta: npt.ArrayLike, ratio: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
@@ -168,9 +175,10 @@ def thrust_through(beta: npt.ArrayLike, ratio: npt.ArrayLike, eta: npt.ArrayLike
 
     The point has an eccentricity ratio 2e/t in [-1, 1]; h is negative where no thrust can pass.
     """
+    within = Range("a ratio in [-1, 1]", lambda ratio, _: abs(ratio) <= 1.0)
     arguments = {"beta": beta, "ratio": ratio, "eta": eta}
-    ranges = [HALF_ANGLE, "a ratio in [-1, 1]", THICKNESS]
-    return evaluate(theory_equations_api.thrust_at_joint, arguments, ranges, theory_number(theory))[0]
+    ranges = {"beta": HALF_ANGLE, "ratio": within, "eta": THICKNESS}
+    return evaluate("thrust_through", theory_number(theory), arguments, ranges)[0]
 
 
 def lower_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
@@ -180,16 +188,14 @@ def lower_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
 
 def springing_thrust(alpha: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
     """Thrust h2 through the extrados of crown and springing: eq. (8); negative where no thrust can pass."""
-    arguments = {"alpha": alpha, "eta": eta}
-    ranges = [HALF_ANGLE, THICKNESS]
-    return evaluate(theory_equations_api.thrust_at_springing, arguments, ranges, theory_number(theory))[0]
+    ranges = {"alpha": HALF_ANGLE, "eta": THICKNESS}
+    return evaluate("springing_thrust", theory_number(theory), {"alpha": alpha, "eta": eta}, ranges)[0]
 
 
 def tangent_thrust(beta: npt.ArrayLike, eta: npt.ArrayLike, theory: str) -> Value:
     """Thrust h_e that touches the intrados at beta: eq. (12), for Heyman eq. (3); negative where none can touch."""
-    arguments = {"beta": beta, "eta": eta}
-    ranges = [HALF_ANGLE, THICKNESS]
-    return evaluate(theory_equations_api.thrust_at_tangent, arguments, ranges, theory_number(theory))[0]
+    ranges = {"beta": HALF_ANGLE, "eta": THICKNESS}
+    return evaluate("tangent_thrust", theory_number(theory), {"beta": beta, "eta": eta}, ranges)[0]
 
 
 def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
@@ -210,7 +216,8 @@ def friction(theory: str, alpha: float = _SEMICIRCLE) -> dict[str, float | str]:
         ``beta_slip`` [rad] the joint of the haunch that slides there together with the springing; ``slides_first``
         "springing" or "haunch", the joint that limits mu_rotational.
     """
-    found = evaluate(theory_discrete_api.friction_range, {"alpha": alpha}, [_ANGLE], theory_number(theory), results=7)
+    ranges = {"alpha": _embraced(theory)._replace(words=_ANGLE)}
+    found = evaluate("friction", theory_number(theory), {"alpha": alpha}, ranges, 7)
     if found[0].ndim > 0:
         raise ValueError(f"alpha must be one angle, got {alpha!r}")
     rotational, mixed, h, slip, springing, beta, eta = found
@@ -230,9 +237,10 @@ def friction_critical(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _SE
 
     From mu_rotational on the result is that of `critical`; below mu_mixed, see `friction`, no thickness stands.
     """
-    ranges = ["a coefficient of mu_mixed or more, see friction()", _ANGLE]
-    arguments = {"mu": mu, "alpha": alpha}
-    beta, eta, h = evaluate(theory_discrete_api.friction_states, arguments, ranges, theory_number(theory), results=3)
+    ranges = {"alpha": _embraced(theory)._replace(words=_ANGLE)}
+    beta, eta, h = evaluate(
+        "friction_critical", theory_number(theory), {"mu": mu, "alpha": alpha}, ranges, 3,
+        ("mu", "a coefficient of mu_mixed or more, see friction()"))
     return beta, eta, h
 
 
@@ -241,17 +249,26 @@ def friction_thickness(mu: npt.ArrayLike, theory: str, alpha: npt.ArrayLike = _S
     return friction_critical(mu, theory, alpha)[1]
 
 
-def _embraced(theory: str) -> Callable[[], str]:
-    """What says what a theory wants of a half angle: only an error needs the words."""
-
-    def words() -> str:
-        limit = limits(theory)["alpha_limit"]
-        return f"an angle in (0, {limit!r}] rad ({math.degrees(limit):.3f} deg) for {theory}"
-
-    return words
+@lru_cache(maxsize=None)
+def _alpha_limit(number: int) -> float:
+    """Greatest half angle of a theory, by its number [rad]."""
+    return float(theory_api.limit_values(number)[0])
 
 
-def _critical(solve: Callable[..., Any], alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
-    """Call one of the Fortran routines that return beta, eta and h."""
-    beta, eta, h = evaluate(solve, {"alpha": alpha}, [_embraced(theory)], theory_number(theory), results=3)
+def _embraced(theory: str) -> Range:
+    """Half angles of a theory."""
+    limit = _alpha_limit(theory_number(theory))
+    words = f"an angle in (0, {limit!r}] rad ({math.degrees(limit):.3f} deg) for {theory}"
+    return Range(words, lambda alpha, _: (alpha > 0.0) & (alpha <= limit))
+
+
+def _critical(formula: str, alpha: npt.ArrayLike, theory: str) -> tuple[Value, Value, Value]:
+    """Evaluate a formula of beta, eta and h."""
+    beta, eta, h = evaluate(formula, theory_number(theory), {"alpha": alpha}, {"alpha": _embraced(theory)}, 3)
     return beta, eta, h
+
+
+def _on_curve(formula: str, beta: npt.ArrayLike, alpha: npt.ArrayLike, theory: str) -> Value:
+    """Evaluate a formula of the equilibrium curve."""
+    ranges = {"alpha": _embraced(theory), "beta": JOINT}
+    return evaluate(formula, theory_number(theory), {"beta": beta, "alpha": alpha}, ranges)[0]

@@ -1,13 +1,15 @@
-"""Arguments of any shape to columns that Fortran takes, and its faults to exceptions."""
+"""Arguments of any shape to columns that Fortran takes, and their ranges of validity."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Union
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 import numpy.typing as npt
+
+from voussoir._theory import theory_api
 
 Column = npt.NDArray[np.float64]
 Value = Union[np.float64, Column]
@@ -18,12 +20,18 @@ _FLOATS = frozenset({float, np.float64})
 #: Numbers of the theories, as in couplet_heyman_theories.f90
 THEORIES = {"heyman": 1, "ccr": 2, "milankovitch": 3}
 
-#: What an argument wants, in words, or what makes the words when they are needed
-Range = Union[str, Callable[[], str]]
 
-THICKNESS = "a thickness ratio in (0, 2)"
-HALF_ANGLE = "an angle in (0, pi) rad"
-JOINT = "an angle in [0, alpha] rad"
+class Range(NamedTuple):
+    """Range of validity of an argument."""
+
+    words: str
+    #: Whether values, the first argument, lie in it; the second one has all arguments
+    holds: Callable[[Any, Mapping[str, Any]], Any]
+
+
+THICKNESS = Range("a thickness ratio in (0, 2)", lambda eta, _: (eta > 0.0) & (eta < 2.0))
+HALF_ANGLE = Range("an angle in (0, pi) rad", lambda angle, _: (angle > 0.0) & (angle < math.pi))
+JOINT = Range("an angle in [0, alpha] rad", lambda beta, given: (beta >= 0.0) & (beta <= given["alpha"]))
 
 
 def theory_number(name: str) -> int:
@@ -58,44 +66,41 @@ def shaped(shape: tuple[int, ...], column: Column) -> Value:
 
 
 def evaluate(
-    routine: Callable[..., Any], arguments: Mapping[str, npt.ArrayLike], ranges: Sequence[Range], *numbers: int,
-    results: int = 1
+    formula: str, theory: int, arguments: Mapping[str, npt.ArrayLike], ranges: Mapping[str, Range], results: int = 1,
+    defined: tuple[str, str] = ("", "")
 ) -> tuple[Value, ...]:
-    """Call a routine of the Fortran layer for every element of its arguments.
+    """Evaluate a formula of the Fortran layer for every element of its arguments.
 
-    It takes them as columns, then the numbers, and returns columns and its fault, by the demand of each argument
-    (`ranges`). Results have the shape of the arguments. ValueError if they are not numeric, do not fit, or are out of
+    The ranges are checked in their order. `defined` is an argument, and its range in words, outside which results are
+    NaN. Results have the shape of the arguments. ValueError if arguments are not numeric, do not fit, or are out of
     range.
     """
-    given = arguments.values()
-    if _FLOATS.issuperset(map(type, given)):
-        *found, fault = routine(*given, *numbers)
-        if fault[0] == 0 and all(math.isfinite(column[0]) for column in found):
-            return tuple([column[0] for column in found])
+    given = list(arguments.values())
+    if _FLOATS.issuperset(map(type, given)) and all(
+            wanted.holds(arguments[name], arguments) for name, wanted in ranges.items()):
+        found = theory_api.formula(results, formula, theory, np.array([given]))[0]
+        if all(map(math.isfinite, found)):
+            return tuple(found)
     shape, flat = columns(**arguments)
     if flat[0].size == 0:
         return tuple(np.empty(shape) for _ in range(results))
-    *found, fault = routine(*flat, *numbers)
-    refuse(fault, list(arguments), flat, ranges)
-    lost = np.flatnonzero(~np.isfinite(found).all(axis=0))
+    by_name = dict(zip(arguments, flat))
+    for name, wanted in ranges.items():
+        refuse(name, by_name[name], wanted.holds(by_name[name], by_name), wanted.words)
+    found = theory_api.formula(results, formula, theory, np.array(flat).T)
+    if defined[0]:
+        refuse(defined[0], by_name[defined[0]], ~np.isnan(found[:, 0]), defined[1])
+    lost = np.flatnonzero(~np.isfinite(found).all(axis=1))
     if lost.size > 0:
-        given_there = ", ".join(f"{name} = {column[lost[0]].item()!r}" for name, column in zip(arguments, flat))
+        given_there = ", ".join(f"{name} = {column[lost[0]].item()!r}" for name, column in by_name.items())
         raise ValueError(f"expected arguments whose results doubles can hold, got {given_there}")
-    return tuple(shaped(shape, column) for column in found)
+    return tuple(shaped(shape, column) for column in found.T)
 
 
-def refuse(
-    fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray[Any]], ranges: Sequence[Range]
-) -> None:
-    """Raise the ValueError, with the offending value, that a fault of the Fortran layer stands for.
-
-    A fault is the place of the argument and of its element, from 1; zeros where all is well.
-    """
-    argument, element = int(fault[0]), int(fault[1])
-    if argument == 0:
+def refuse(name: str, column: npt.NDArray[Any], valid: npt.NDArray[Any], words: str) -> None:
+    """Raise a ValueError with the first value of an argument that is not valid."""
+    if valid.all():
         return
-    value = flat[argument - 1][element - 1].item()
-    where = f" at element {element - 1}" if flat[argument - 1].size > 1 else ""
-    wanted = ranges[argument - 1]
-    words = wanted if isinstance(wanted, str) else wanted()
-    raise ValueError(f"{names[argument - 1]} must be {words}, got {value!r}{where}")
+    element = int(np.argmin(valid))
+    where = f" at element {element}" if column.size > 1 else ""
+    raise ValueError(f"{name} must be {words}, got {column[element].item()!r}{where}")

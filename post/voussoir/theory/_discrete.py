@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from voussoir._theory import theory_discrete_api
-from voussoir.theory._columns import Value, columns, real_array, refuse, shaped
+from voussoir._theory import theory_api
+from voussoir.theory._columns import HALF_ANGLE, Value, columns, real_array, refuse, shaped
 
 #: Names of the outcomes, as numbered in couplet_heyman_discrete.f90
 STATUS = ("found", "stands_always", "none_admissible", "bad_input", "unsettled")
@@ -18,9 +17,10 @@ STATUS = ("found", "stands_always", "none_admissible", "bad_input", "unsettled")
 ROLES = {1: "intrados_hinges", 2: "extrados_hinges", 3: "sliding_joints"}
 
 _NO_SLIP = math.pi
+#: Most voussoirs, and the shortest chord [rad]: shorter ones change no digit
+MOST_VOUSSOIRS, SHORTEST_CHORD = 10_000_000, 1e-7
 _WANTS = {
     "joints": "1 to 10 million voussoirs, or joint angles that increase within [0, pi) rad",
-    "alpha": "an angle in (0, pi) rad",
     "facet": "an angle of at least 1e-7 rad",
     "friction": "an angle of 0 rad or more",
 }
@@ -114,12 +114,13 @@ def _solve(
     angles = real_array("joints", joints)
     if angles.ndim != 1 or angles.size == 0:
         raise ValueError(f"joints must be the angles of one half arch, or a number together with alpha, got {joints!r}")
+    in_range = HALF_ANGLE.holds(angles, {})
+    in_range[0] |= angles.size > 1 and angles[0] == 0.0
+    in_range[1:] &= np.diff(angles) > 0.0
+    refuse("joints", angles, in_range, _WANTS["joints"])
     shape, flat = columns(facet=facet, friction=friction)
-    rows = []
-    for chord, angle in zip(*flat):
-        *found, fault = theory_discrete_api.discrete_joints(angles, chord, angle, int(springing_no_slip))
-        _refuse(fault, ["joints", "facet", "friction"], [angles, flat[0], flat[1]])
-        rows.append(found)
+    _refuse_others(*flat)
+    rows = [theory_api.discrete_joints(angles, chord, angle, int(springing_no_slip)) for chord, angle in zip(*flat)]
     status, eta, h = (np.array([row[i] for row in rows]) for i in range(3))
     joint, role = (np.array([row[i] for row in rows]).reshape(-1, 5).T for i in (3, 4))
     return shape, status.astype(int), eta.astype(float), h.astype(float), joint, role, flat
@@ -139,9 +140,10 @@ def _solve_equal(
     if counts.size == 0:
         none = np.empty(0)
         return (shape, none.astype(int), none, none, np.empty((5, 0)), np.empty((5, 0), int), flat[2:])
-    *found, fault = theory_discrete_api.discrete_equal(counts, *flat[1:], int(springing_no_slip))
-    _refuse(fault, ["joints", "alpha", "facet", "friction"], [counts, *flat[1:]])
-    return (shape, *found, flat[2:])
+    refuse("joints", counts, (counts >= 1) & (counts <= MOST_VOUSSOIRS), _WANTS["joints"])
+    refuse("alpha", flat[1], HALF_ANGLE.holds(flat[1], {}), HALF_ANGLE.words)
+    _refuse_others(*flat[2:])
+    return (shape, *theory_api.discrete_equal(counts, *flat[1:], int(springing_no_slip)), flat[2:])
 
 
 def _positive_facet(facet: npt.ArrayLike) -> npt.NDArray[np.float64]:
@@ -153,6 +155,8 @@ def _positive_facet(facet: npt.ArrayLike) -> npt.NDArray[np.float64]:
     return array
 
 
-def _refuse(fault: Sequence[int], names: Sequence[str], flat: Sequence[npt.NDArray[Any]]) -> None:
-    """Raise what a fault stands for."""
-    refuse(fault, names, flat, [_WANTS[name] for name in names])
+def _refuse_others(facet: npt.NDArray[np.float64], friction: npt.NDArray[np.float64]) -> None:
+    """Refuse chords that are too short, and negative friction angles."""
+    has_length = (facet == 0.0) | (facet >= SHORTEST_CHORD) & (facet < math.inf)
+    refuse("facet", facet, has_length, _WANTS["facet"])
+    refuse("friction", friction, friction >= 0.0, _WANTS["friction"])
