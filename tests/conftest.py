@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -32,6 +33,10 @@ MAY_SKIP = (
     "root writes into every folder",
     "is not here",  # files of the original program, which are not ours to publish
 )
+TESTS = Path(__file__).parent
+#: Folders whose modules tests of several folders use
+SHARED = ("bench", "cli", "framework", "lint", "mutants", "../docs/site")
+sys.path += [str((TESTS / name).resolve()) for name in SHARED]
 MOST_SECONDS = 300  #: Seconds that a test may take; the slowest takes a tenth on an idle machine
 skipped: Counter[str] = Counter()
 

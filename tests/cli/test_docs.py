@@ -21,13 +21,11 @@ import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import page_pictures
 import pytest
 from dda_command import run_dda
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "docs" / "site"))
-
-import page_pictures  # noqa: E402
 
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
 INSTALL = re.compile(r"sudo apt-get |cmake -|python3 -m venv |env/bin/|xargs -d |ctest |build/bin/voussoir paper ")
@@ -279,7 +277,6 @@ def test_every_number_that_nothing_here_computes_is_accounted_for() -> None:
                         ("2.51 m", ["2.51"])])
 def test_numbers_are_compared_as_they_are_rounded(words: str, lost: list[str]) -> None:
     assert unknown_numbers(words, "x = 0.16302, 2.5049, n=3") == lost
-
 
 
 def test_tables_begin_with_their_head() -> None:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
 from dda_command import rows_of, run_deck
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
-from jointed_slope import geometry  # noqa: E402
+from jointed_slope import geometry
 
 
 def decide(folder: Path, lines: str, groups: str) -> dict[str, str]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from faults import draw_faults, faults_of
+
 REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY / "tests" / "mutants"))
-from faults import draw_faults, faults_of  # noqa: E402
 
 SOURCE = """module m
    real(wp), parameter :: share = 0.5_wp

@@ -170,7 +170,6 @@ def test_what_breaks_a_rule_of_python_is_found(tmp_path: Path, old: str, new: st
 
 
 def test_pages_of_the_sources_have_every_module_and_threshold(tmp_path: Path) -> None:
-    sys.path.insert(0, str(REPOSITORY / "docs" / "site"))
     import source_pages
 
     script = REPOSITORY / "docs" / "site" / "source_pages.py"

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import math
 import random
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from assembly import Assembly, area_and_centre, find_joints
 from confined import CONFINED, FALLING, Layout, turned
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-from assembly import Assembly, area_and_centre, find_joints  # noqa: E402
 
 SEEDS = range(20)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 import signal
@@ -12,18 +11,16 @@ import time
 from pathlib import Path
 
 import pytest
+from dda_command import rows_of
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+from voussoir import results
+from voussoir.campaign.merge import TABLES, merge
+from voussoir.campaign.part import Part, cases_of, ranges_of, run_part
+from voussoir.campaign.share import share
+from voussoir.command.main import main
+from voussoir.dda_program import ask
 
-from voussoir import results  # noqa: E402
-from voussoir.campaign.merge import TABLES, merge  # noqa: E402
-from voussoir.campaign.part import Part, cases_of, ranges_of, run_part  # noqa: E402
-from voussoir.campaign.share import share  # noqa: E402
-from voussoir.command.main import main  # noqa: E402
-from voussoir.dda_program import ask  # noqa: E402
-
-DDA = os.environ.get("DDA", "")
-pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
+DDA = os.environ["DDA"]
 
 DECK = """&arch voussoirs = 12 /
 &search /
@@ -38,12 +35,6 @@ def test_no_table_of_the_program_is_forgotten() -> None:
         pytest.skip("the sources are not here: skipped")
     names = re.findall(r'name_table\(.*"/(\w+\.\w+)"', source.read_text())
     assert len(names) >= 9 and set(names) == set(TABLES)
-
-
-@pytest.fixture(autouse=True)
-def program(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program of this build."""
-    monkeypatch.setenv("VOUSSOIR_DDA", DDA)
 
 
 def write_deck(folder: Path, angles: int = 10) -> Path:
@@ -83,7 +74,7 @@ def test_campaign_gives_the_tables_of_one_run_in_order(tmp_path: Path, unbroken)
     status = main(["campaign", deck, "--out", str(out), "--workers", "3", "--quiet"])
     assert status == 0
     assert tables(out) == unbroken
-    cases = [int(row["case"]) for row in csv.DictReader((out / "results.csv").open())]
+    cases = [int(row["case"]) for row in rows_of(out / "results.csv")]
     assert cases == list(range(1, 31))
     assert not (out / "parts").exists()
     words = [DDA, "run", deck, "--out", out, "--resume"]
@@ -125,7 +116,7 @@ def test_settings_reach_every_part(tmp_path: Path) -> None:
     deck, out = str(write_deck(tmp_path, 2)), tmp_path / "out"
     words = ["campaign", deck, "--out", str(out), "--set", "arch%voussoirs=7", "--quiet"]
     assert main(words) == 0
-    assert {row["blocks"] for row in csv.DictReader((out / "results.csv").open())} == {"7"}
+    assert {row["blocks"] for row in rows_of(out / "results.csv")} == {"7"}
 
 
 def test_another_deck_is_not_mixed_with_the_first(tmp_path: Path, capsys) -> None:
@@ -136,7 +127,7 @@ def test_another_deck_is_not_mixed_with_the_first(tmp_path: Path, capsys) -> Non
     error = capsys.readouterr().err
     assert "other arch%voussoirs" in error and ":1: error: expected" in error and "--discard" in error
     assert main(["campaign", str(deck), "--out", str(out), "--discard", "--quiet"]) == 0
-    assert {row["blocks"] for row in csv.DictReader((out / "results.csv").open())} == {"8"}
+    assert {row["blocks"] for row in rows_of(out / "results.csv")} == {"8"}
 
 
 def test_bad_deck_is_reported_as_by_the_program(tmp_path: Path, capsys) -> None:

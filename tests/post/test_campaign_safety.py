@@ -13,12 +13,9 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
+from voussoir.command.main import main
 
-from voussoir.command.main import main  # noqa: E402
-
-DDA = os.environ.get("DDA", "")
-pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
+DDA = os.environ["DDA"]
 
 MUTANTS = int(os.environ.get("MUTANTS", "12"))  #: Mutants of parts; the target fuzz asks for more
 SWEEP = """&arch voussoirs = 8 /
@@ -26,12 +23,6 @@ SWEEP = """&arch voussoirs = 8 /
 &sweep parameter = 'half_angle_deg', first = 60, last = 90, count = 12 /
 """
 BLOCKS = "block fixed\n-1 -1\n1 -1\n1 0\n-1 0\nblock\n-0.5 0\n0.5 0\n{x} 1\n-0.5 1\n"
-
-
-@pytest.fixture(autouse=True)
-def program(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program of this build."""
-    monkeypatch.setenv("VOUSSOIR_DDA", DDA)
 
 
 def tables(folder: Path) -> dict[str, bytes]:

@@ -11,20 +11,16 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import page_rules
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir import __version__  # noqa: E402
-from voussoir.command import main as command_line  # noqa: E402
-from voussoir.command.main import build_parser, main  # noqa: E402
+from voussoir import __version__
+from voussoir.command import main as command_line
+from voussoir.command.main import build_parser, main
 
 COMMANDS = {**command_line.COMMANDS, **command_line.SOURCE_COMMANDS}
 
 TESTS = Path(__file__).parents[1]
-sys.path.insert(0, str(TESTS / "lint"))
-
-import page_rules  # noqa: E402
 
 
 def help_of(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
@@ -113,7 +109,6 @@ def words_of_calls() -> Iterator[set[str]]:
 
 
 CALLS = list(words_of_calls())
-
 
 # `voussoir paper` runs every deck of the paper: the target `paper` of the build is its test
 @pytest.mark.parametrize("command", [name for name in COMMANDS if name != "paper"])

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("scipy", reason="the linear programme wants scipy")
-pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
+
+from bridges import rings  # noqa: E402
+from dda_command import run_deck  # noqa: E402
+from live_assemblies import held_state, random_assembly  # noqa: E402
+from test_live_loads import friction_of, table  # noqa: E402
 
 from voussoir.command.main import main  # noqa: E402
 from voussoir.verify import command as verify_command  # noqa: E402
 from voussoir.verify.deck import read_deck  # noqa: E402
 from voussoir.verify.proofs import Scene  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
-
-from bridges import rings  # noqa: E402
-from live_assemblies import held_state, random_assembly  # noqa: E402
-from test_live_loads import friction_of, table  # noqa: E402
 
 ROWS = [row for row in table("practice_multi_ring.csv") if row["P_over_weight_one_coulomb_state"]]
 SHARES = {("0.12", "2", "0.6"): 0.15}  #: Slower than the others: half the way there and back for ever
@@ -30,11 +25,9 @@ SHARES = {("0.12", "2", "0.6"): 0.15}  #: Slower than the others: half the way t
 def search(folder: Path, blocks: str, friction: str) -> tuple[dict[str, str], Scene]:
     """Row of the search of the first collapse, and the scene under a load factor of one."""
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 1.0 /\n"
-        f"&joint friction_deg = {friction} /\n&search parameter = 'load_factor' /\n"
-    )
-    subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=folder, check=True)
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&material unit_weight = 1.0 /\n"
+        f"&joint friction_deg = {friction} /\n&search parameter = 'load_factor' /\n", "--quiet")
     assert main(["verify", str(folder / "x"), "--quiet"]) == 0
     tables = {name: verify_command.read_table(folder / "x" / f"{name}.csv") for name in ("results", "blocks")}
     (found,) = tables["results"][1]

@@ -10,16 +10,13 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from test_campaign_safety import damage
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib", reason="matplotlib is not installed: skipped")
-
-from test_campaign_safety import damage  # noqa: E402
 
 from voussoir.command.main import main  # noqa: E402
 
-DDA = os.environ.get("DDA", "")
-pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
+DDA = os.environ["DDA"]
 MUTANTS = int(os.environ.get("MUTANTS", "8"))  #: Mutants of tables; the target fuzz asks for more
 DECKS = {
     "moves": "&arch voussoirs = 6, thickness_ratio = 0.09 /\n&analysis geometry = 'current' /\n"

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
+from dda_command import run_dda
 
-np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
+import voussoir  # noqa: E402
 from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.plot.bare_scene import draw_file  # noqa: E402
@@ -31,16 +30,12 @@ from voussoir.plot.thrust_path import chain_pairs  # noqa: E402
 from voussoir.polygon import distance  # noqa: E402
 from voussoir.results import Block  # noqa: E402
 
-DDA = os.environ.get("DDA", "")
 ROOT = Path(__file__).resolve().parents[2]
-pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 
 
 def compute(folder: Path, text: str) -> results.Results:
     """Results of a deck."""
-    (folder / "deck.nml").write_text(text)
-    assert subprocess.run([DDA, "run", "deck.nml", "--quiet"], cwd=folder).returncode in (0, 3)
-    return results.read(folder / "deck")
+    return voussoir.run(text, out=folder)
 
 
 def wall(courses: int, bricks: int) -> str:
@@ -287,7 +282,7 @@ def test_files_of_lines_are_drawn_as_the_blocks_that_they_cut(tmp_path: Path) ->
     with house_style():
         figure = draw_file(geo)
     blocks = next(part for part in figure.axes[0].collections if isinstance(part, PolyCollection))
-    count = subprocess.run([DDA, "cut", geo], capture_output=True, text=True).stdout
+    count = run_dda("cut", geo).stdout
     total = sum(len(part.get_paths()) for part in figure.axes[0].collections if isinstance(part, PolyCollection))
     assert f", {total} blocks" in count and len(blocks.get_paths())
     assert "bar" in names(figure)

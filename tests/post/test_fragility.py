@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib")
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir.command.main import main  # noqa: E402
 from voussoir.plot.fragility import Lognormal, draw_fragility, fit_shares, fit_values  # noqa: E402
 from voussoir.results import read  # noqa: E402
-
-DDA = os.environ.get("DDA", "")
 
 
 def test_the_likelihood_is_at_its_maximum() -> None:
@@ -74,13 +70,11 @@ def write_study(folder: Path, search: bool) -> Path:
     return deck
 
 
-@pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 @pytest.mark.parametrize("search", [False, True])
 def test_a_campaign_over_records_becomes_a_curve(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], search: bool
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], search: bool
 ) -> None:
     """A sine carries A/2 pi f^2: what collapses is known of each, and so are median and dispersion."""
-    monkeypatch.setenv("VOUSSOIR_DDA", DDA)
     deck, out = write_study(tmp_path, search), tmp_path / "out"
     assert main(["campaign", str(deck), "--out", str(out), "--workers", "2", "--quiet"]) == 0
     capsys.readouterr()
@@ -97,11 +91,9 @@ def test_a_campaign_over_records_becomes_a_curve(
     assert figure.axes[0].get_xlabel() == "peak acceleration of the ground [m/s²]"
 
 
-@pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 def test_results_without_strengths_are_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv("VOUSSOIR_DDA", DDA)
     (tmp_path / "a.nml").write_text("&arch voussoirs = 6 /\n&sweep parameter = 'radius', values = 5, 10 /\n")
     assert main(["campaign", str(tmp_path / "a.nml"), "--out", str(tmp_path / "out"), "--quiet"]) == 0
     assert main(["plot", str(tmp_path / "out"), "--fragility"]) == 2

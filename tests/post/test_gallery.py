@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
-import sys
 from pathlib import Path
 
+import gallery
+import numpy as np
 import pytest
 
-np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
-pytest.importorskip("voussoir.theory", reason="PYTHONPATH wants the build's python folder")
 
 import voussoir  # noqa: E402
 from voussoir import theory  # noqa: E402
@@ -19,11 +17,6 @@ from voussoir_benches.limit_lp_blocks import assembly_of, limit_factor  # noqa: 
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "input" / "gallery"
-sys.path.insert(0, str(ROOT / "docs" / "site"))
-
-import gallery  # noqa: E402
-
-pytestmark = pytest.mark.skipif(not os.environ.get("DDA"), reason="DDA wants the name of the program")
 
 
 def run(name: str, **keys: object) -> voussoir.results.Results:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
+from drawn_files import box, drawing, feature, geojson, line
 
-np = pytest.importorskip("numpy")
-voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("shapely")
 
-from drawn_files import box, drawing, feature, geojson, line  # noqa: E402
-
+import voussoir  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.imports.curves import Arc, Line, Points, nearest, on_curve  # noqa: E402
 from voussoir.imports.snapping import Cells, points_on_edges  # noqa: E402

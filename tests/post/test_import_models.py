@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from drawn_files import assembly, box, drawing, feature, geojson, mesh, polyline
 
-voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("shapely")
 
+import voussoir  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.dda_program import find_dda  # noqa: E402
 

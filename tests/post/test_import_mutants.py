@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 from mutated_files import mutated, seeds
 
-voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("shapely")
 
 from voussoir.command import import_file  # noqa: E402

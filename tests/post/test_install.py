@@ -12,9 +12,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir.command.main import COMMANDS  # noqa: E402
+from voussoir.command.main import COMMANDS
 
 BUILD = os.environ.get("VOUSSOIR_BUILD", "")
 

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from dda_command import rows_of, run_deck
+from live_assemblies import programme
+from odd_assemblies import UNIT_WEIGHT, odd_assembly
 
-pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-
-from voussoir.command.main import main  # noqa: E402
-from voussoir.verify import command as verify_command  # noqa: E402
-from voussoir.verify.deck import read_deck  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
-
-from live_assemblies import programme  # noqa: E402
-from odd_assemblies import UNIT_WEIGHT, odd_assembly  # noqa: E402
+from voussoir.command.main import main
+from voussoir.verify import command as verify_command
+from voussoir.verify.deck import read_deck
 
 #: Assemblies of every kind: smooth, lifted by as much as they weigh, on one corner, held by what rounding leaves
 SEEDS = [0, 3, 9, 15, 18, 34, 37, 38, 46, 77, 83, 95, 97, 110, 115, 123, 126, 128, 140, 150, 153]
@@ -35,15 +27,12 @@ def run(
     if not live:
         blocks = "".join(line for line in blocks.splitlines(keepends=True) if not line.startswith("live"))
     (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n&output joints = .true., blocks = .true. /\n"
+    run_deck(
+        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&output joints = .true., blocks = .true. /\n"
         f"&material density = 2000, unit_weight = {UNIT_WEIGHT!r} /\n&joint friction_deg = {friction!r} /\n"
-        f"&analysis flow = '{flow}' /\n{task} /\n")
-    done = subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+        f"&analysis flow = '{flow}' /\n{task} /\n", "--quiet")
     assert main(["verify", str(folder / "x"), "--quiet"]) == 0
-    with (folder / "x" / "results.csv").open(newline="") as table:
-        return next(csv.DictReader(table))
+    return rows_of(folder / "x" / "results.csv")[0]
 
 
 @pytest.mark.parametrize("flow", ["associated", "coulomb"])

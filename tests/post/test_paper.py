@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dda_command import rows_of
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
 from voussoir import results, theory  # noqa: E402
@@ -92,8 +92,7 @@ def test_haunches_turn_at_the_joint_nearest_to_theory_or_the_next(paper_folder: 
 
 @pytest.mark.parametrize("name", list(paper_tables.TITLES))
 def test_every_row_has_every_column(paper_folder: Path, name: str) -> None:
-    with (paper_folder / "tables" / f"{name}.csv").open(newline="") as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of(paper_folder / "tables" / f"{name}.csv")
     exact = [row for row in EXACT if row["table"] == name]
     printed = [row for row in PAPER if row["table"] == name]
     assert len(rows) == len(exact) == len(printed)
@@ -113,8 +112,7 @@ def test_every_row_has_every_column(paper_folder: Path, name: str) -> None:
 
 
 def test_hinges_of_table_4_are_the_papers(paper_folder: Path) -> None:
-    with (paper_folder / "tables" / "table4.csv").open(newline="") as lines:
-        hinges = [float(row["ours_rigid_hinge_deg"]) for row in csv.DictReader(lines)]
+    hinges = [float(row["ours_rigid_hinge_deg"]) for row in rows_of(paper_folder / "tables" / "table4.csv")]
     assert hinges == [30, 40, 45, 55, 60, 60, 65, 65, 60, 50]
 
 
@@ -202,8 +200,7 @@ def test_column_joins_by_a_deck_alone(paper_folder: Path, tmp_path: Path) -> Non
     text = (DECKS / "table1.nml").read_text()
     (decks / "table1_limerick.nml").write_text(text)
     (out / "table1_limerick").mkdir()
-    with (out / "table1" / "results.csv").open(newline="") as lines:
-        rows = [row for row in csv.DictReader(lines) if row["geometry"] == "current"]
+    rows = [row for row in rows_of(out / "table1" / "results.csv") if row["geometry"] == "current"]
     with (out / "table1_limerick" / "results.csv").open("w", newline="") as lines:
         writer = csv.DictWriter(lines, rows[0].keys())
         writer.writeheader()

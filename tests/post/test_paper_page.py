@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
 from voussoir.dda_program import find_input  # noqa: E402
@@ -20,6 +19,7 @@ from voussoir_paper.campaign import Campaign  # noqa: E402
 
 DECKS = find_input("paper")
 FIGURES = [f"figure{number}" for number in range(1, 21)]
+
 
 # the page
 

@@ -4,14 +4,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import check_failures
+import make_funit
+import pf_to_fortran
 import pytest
 
 FRAMEWORK = Path(__file__).resolve().parents[1] / "framework"
-sys.path.insert(0, str(FRAMEWORK))
-
-import check_failures  # noqa: E402
-import make_funit  # noqa: E402
-import pf_to_fortran  # noqa: E402
 
 PATH = Path("tests/unit/test_arch.pf")
 PASSING = """module test_arch

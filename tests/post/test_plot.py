@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
+from dda_command import run_dda
 
-np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from matplotlib.colors import to_hex  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 
+import voussoir  # noqa: E402
 from voussoir import results  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.plot.case_joints import roles_of, thrust_points  # noqa: E402
@@ -31,21 +29,17 @@ from voussoir.plot.sheet import Sheet, renderer_of  # noqa: E402
 from voussoir.plot.sweep_chart import draw_map  # noqa: E402
 from voussoir.plot.units import axis_label, force_text, length_text, rounded  # noqa: E402
 
-DDA = os.environ.get("DDA", "")
 #: Three axles close to one another, two of one weight
 BRIDGE = (
     "&arch shape = 'segmental', span = 8, rise = 2, thickness = 0.5, voussoirs = 15 /\n"
     "&vehicle axles = 12e3, 12e3, 20e3, spacings = 0.4, 0.4, position = -2 /\n&search parameter = 'load_factor' /\n"
 )
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
-pytestmark = pytest.mark.skipif(not DDA, reason="DDA wants the name of the program")
 
 
 def compute(folder: Path, text: str) -> results.Results:
     """Results of a deck."""
-    (folder / "deck.nml").write_text(text)
-    subprocess.run([DDA, "run", "deck.nml", "--quiet"], cwd=folder, check=True)
-    return results.read(folder / "deck")
+    return voussoir.run(text, out=folder)
 
 
 @pytest.fixture(scope="module")
@@ -90,8 +84,7 @@ def benchmark(folder: Path, deck: str, *settings: str) -> results.Results:
     """Results of a deck of input/benchmarks."""
     options = [word for setting in settings for word in ("--set", setting)]
     out = folder / deck
-    command = [DDA, "run", BENCHMARKS / f"{deck}.nml", "--quiet", "--out", out, *options]
-    assert subprocess.run(command).returncode in (0, 3)
+    assert run_dda("run", BENCHMARKS / f"{deck}.nml", "--quiet", "--out", out, *options).returncode in (0, 3)
     return results.read(out)
 
 
@@ -211,9 +204,7 @@ def test_ways_of_measured_points_end_where_the_points_are(rocking: results.Resul
 def test_scenes_of_lines_and_of_the_original_scheme_are_drawn(tmp_path: Path) -> None:
     for mode in ("static", "limerick"):
         deck = BENCHMARKS.parent / "limerick" / "terrace.nml"
-        out = tmp_path / mode
-        command = [DDA, "run", deck, "--quiet", "--out", out, "--set", f"analysis%mode={mode}"]
-        assert subprocess.run(command).returncode in (0, 3)
+        out = voussoir.run(deck, out=tmp_path / mode, **{"analysis%mode": mode}).folder
         assert main(["plot", str(out)]) == 0
         assert (out / "plots" / "case_1.svg").stat().st_size > 5000
 
@@ -229,10 +220,9 @@ def test_scenes_of_lines_and_of_the_original_scheme_are_drawn(tmp_path: Path) ->
     ],
 )
 def test_cases_of_any_end_are_drawn(tmp_path: Path, groups: str, words: str) -> None:
-    (tmp_path / "deck.nml").write_text(f"&arch voussoirs = 8 /\n{groups}\n")
-    subprocess.run([DDA, "run", "deck.nml", "--quiet"], cwd=tmp_path)
+    run = voussoir.run(f"&arch voussoirs = 8 /\n{groups}\n", out=tmp_path)
     with house_style():
-        assert words in legend_of(draw_case(results.read(tmp_path / "deck"), 1))
+        assert words in legend_of(draw_case(run, 1))
 
 
 SPREAD = (

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from public_drawings import Drawn, Pen, drawings
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("shapely")
 
 from voussoir.command.main import main  # noqa: E402

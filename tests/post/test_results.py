@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import os
 import random
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir import results  # noqa: E402
-
-
-def run(folder: Path, text: str) -> results.Results:
-    """Run a deck and read its results."""
-    (folder / "deck.nml").write_text(text)
-    command = [os.environ["DDA"], "run", "deck.nml", "--out", "out", "--quiet"]
-    subprocess.run(command, cwd=folder, check=True, timeout=120)
-    return results.read(folder / "out")
+import voussoir
+from voussoir import results
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +19,7 @@ def searched(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
     text = """&search /
         &sweep parameter = 'voussoirs', values = 4, 7, 12 /
         &sweep parameter = 'plane', texts = 'stress', 'strain' /"""
-    return run(tmp_path_factory.mktemp("searched"), text)
+    return voussoir.run(text, out=tmp_path_factory.mktemp("searched"))
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +29,7 @@ def moved(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
         &analysis geometry = 'current' /
         &output frames = 4 /
         &sweep parameter = 'thickness_ratio', values = 0.05, 0.2 /"""
-    return run(tmp_path_factory.mktemp("moved"), text)
+    return voussoir.run(text, out=tmp_path_factory.mktemp("moved"))
 
 
 def test_columns_have_their_types(searched: results.Results) -> None:
@@ -178,12 +167,10 @@ def test_chart_of_a_large_table_reads_its_columns_alone(tmp_path: Path, monkeypa
     from voussoir.command import plot
     from voussoir.plot.design_chart import chart_columns
 
-    whole = run(
-        tmp_path,
+    whole = voussoir.run(
         "&arch voussoirs = 12 /\n&search parameter = 'thickness_ratio' /\n"
         "&sweep parameter = 'half_angle_deg', values = 60, 70, 80 /\n"
-        "&sweep parameter = 'horizontal_coefficient', first = 0, last = 0.1, count = 41 /\n",
-    )
+        "&sweep parameter = 'horizontal_coefficient', first = 0, last = 0.1, count = 41 /\n", out=tmp_path)
     some = results.read(whole.folder, chart_columns)
     assert {"horizontal_coefficient", "half_angle_deg", "critical"} <= set(some.cases) < set(whole.cases)
     assert all(np.array_equal(whole.cases[name], some.cases[name], equal_nan=True) for name in ("case", "critical"))

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import os
-import subprocess
 from pathlib import Path
 
 import pytest
+from dda_command import rows_of, run_deck
 from rocking_arch import G, Arch, stands
 
 #: Acceleration over g, the longest pulse by the integrator for steps of 2 ms, and that of four links [s]
@@ -17,16 +15,14 @@ SHAPE = {"voussoirs": 7, "radius": 10.0, "ratio": 0.15, "half_deg": 78.75}
 
 def bears(folder: Path, share: float, duration: float) -> bool:
     """Whether the program's arch stands after a pulse."""
-    (folder / "x.nml").write_text(
-        "&arch radius = 10.0, thickness_ratio = 0.15, half_angle_deg = 78.75, voussoirs = 7 /\n"
+    run_deck(
+        folder, "&arch radius = 10.0, thickness_ratio = 0.15, half_angle_deg = 78.75, voussoirs = 7 /\n"
         "&joint friction_deg = 89.9 /\n"
         f"&ground pulse = 'rectangular', amplitude = {share * G!r}, duration = {duration!r} /\n"
         "&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = 0.002, duration = 8.0,\n"
         "  steps = 1000000, max_displacement_ratio = 0.02, collapse_rotation_deg = 45.0 /\n"
-        "&output vtu = .false., joints = .false. /\n")
-    subprocess.run([os.environ["DDA"], "run", "x.nml", "--quiet"], cwd=folder, check=False)
-    with (folder / "x" / "results.csv").open() as table:
-        row = next(csv.DictReader(table))
+        "&output vtu = .false., joints = .false. /\n", "--quiet")
+    (row,) = rows_of(folder / "x" / "results.csv")
     assert row["verdict"] in ("completed", "collapsed")
     return row["verdict"] == "completed"
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-voussoir = pytest.importorskip("voussoir")
-from voussoir.dda_program import DdaError  # noqa: E402
+import voussoir
+from voussoir.dda_program import DdaError
 
 ARCH = {"arch": {"voussoirs": 12}, "search": {"parameter": "thickness_ratio"}}
 TEXT = "&arch voussoirs = 12 /\n&search /\n"

@@ -14,7 +14,7 @@ from urllib.parse import unquote
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-DDA = os.environ.get("DDA", "")
+DDA = os.environ["DDA"]
 
 
 @pytest.fixture(scope="module")

@@ -1,19 +1,16 @@
 """`voussoir stability`: the judgement itself, on answers made up, and a few scenes run."""
 
-import csv
-import os
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from dda_command import rows_of
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir_benches import stability  # noqa: E402
-from voussoir.command.main import main  # noqa: E402
-from voussoir_benches.checks import Check  # noqa: E402
-from voussoir_benches.deck_runs import Finished  # noqa: E402
-from voussoir_benches.expectations import (  # noqa: E402
+from voussoir_benches import stability
+from voussoir.command.main import main
+from voussoir_benches.checks import Check
+from voussoir_benches.deck_runs import Finished
+from voussoir_benches.expectations import (
     Critical,
     Measured,
     Refused,
@@ -22,16 +19,9 @@ from voussoir_benches.expectations import (  # noqa: E402
     Warned,
     judge,
 )
-from voussoir_benches.scene import Scene  # noqa: E402
-from voussoir_benches.stability_random import tower_push  # noqa: E402
-from voussoir_benches.stability_scenes import catalogue, random_scenes  # noqa: E402
-
-
-@pytest.fixture(autouse=True)
-def _program(monkeypatch):
-    """The program under test."""
-    if "DDA" in os.environ:
-        monkeypatch.setenv("VOUSSOIR_DDA", os.environ["DDA"])
+from voussoir_benches.scene import Scene
+from voussoir_benches.stability_random import tower_push
+from voussoir_benches.stability_scenes import catalogue, random_scenes
 
 
 def row(verdict="found", critical="0.1", low="0.0999", high="0.1001", case="1"):
@@ -153,14 +143,12 @@ def test_an_arch_is_judged_with_its_lean_plan_too(tmp_path, monkeypatch):
     assert scene.has_lean_plan and not blocks.has_lean_plan
 
 
-@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
 def test_scenes_are_run_and_reported(tmp_path, capsys):
     only = "large angles: 140 deg, friction 6"
     assert main(["stability", "--out", str(tmp_path), "--only", only, "--random", "0"]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
     assert last.startswith("0 WRONG, 0 undecided (0.0 %), 4 right")
-    with (tmp_path / "stability.csv").open() as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of(tmp_path / "stability.csv")
     assert {line["result"] for line in rows} == {"right"}
     # what the joint graph proves to fall has no equations of a step
     assert all(not line["condition"] or float(line["condition"]) > 1.0 for line in rows)
@@ -172,7 +160,6 @@ def test_scenes_are_run_and_reported(tmp_path, capsys):
     assert "not right" not in page
 
 
-@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
 @pytest.mark.parametrize("group", ["contrast", "bad input", "corners", "slender"])
 def test_extreme_blocks_are_right(tmp_path, group, capsys):
     words = ["stability", "--out", str(tmp_path), "--only", group, "--random", "0"]
@@ -180,7 +167,6 @@ def test_extreme_blocks_are_right(tmp_path, group, capsys):
     assert "0 WRONG, 0 undecided" in capsys.readouterr().out
 
 
-@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
 def test_random_arches_and_blocks_are_right(tmp_path):
     words = ["stability", "--out", str(tmp_path), "--only", "random", "--random", "60"]
     words += ["--seed", "7"]
@@ -193,7 +179,6 @@ def test_scenes_are_listed(capsys):
     assert len(capsys.readouterr().out.splitlines()) == 21
 
 
-@pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
 def test_scene_that_takes_too_long_is_undecided(tmp_path, capsys):
     words = ["--only", "voussoirs: 10000", "--random", "0"]
     done = main(["stability", "--out", str(tmp_path), "--timeout", "0.01", "--jobs", "1", "--seed", "1"] + words)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import math
-import os
 from pathlib import Path
 
+import numpy as np
 import pytest
+from dda_command import rows_of
 
-np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
-pytest.importorskip("voussoir.theory", reason="PYTHONPATH wants the build's python folder")
 
 from voussoir import theory  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
@@ -19,7 +17,6 @@ from voussoir.deck.study import SAME, Series, Study, StudyError, study  # noqa: 
 from voussoir.plot.study_chart import draw_study  # noqa: E402
 
 BENCHMARKS = Path(__file__).resolve().parents[2] / "input" / "benchmarks"
-pytestmark = pytest.mark.skipif(not os.environ.get("DDA"), reason="DDA wants the name of the program")
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 3.0])
@@ -121,8 +118,7 @@ def test_command_prints_writes_and_draws(tmp_path: Path, capsys, monkeypatch: py
     assert main(words) == 0
     printed = capsys.readouterr().out
     assert "observed order 1.00" in printed and "error" in printed
-    with (tmp_path / "out" / "study.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "out" / "study.csv")
     assert [float(row["value_of_key"]) for row in rows] == [5e9, 1e10, 2e10]
     assert [float(row["error"]) for row in rows] == [abs(float(row["value"]) - exact) for row in rows]
     assert (tmp_path / "out" / "study.png").exists()

@@ -9,13 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir import theory  # noqa: E402
+from voussoir import theory
 
 THEORIES = ("heyman", "ccr", "milankovitch")
 QUARTER = math.pi / 2
-
 
 #: Each function with a value in the place of each of its arguments
 CALLS = {

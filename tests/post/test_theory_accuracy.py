@@ -4,14 +4,13 @@ The reference solves eqs. (14) and (18) in mpmath, with nothing in common with t
 equations.
 """
 
-import csv
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from dda_command import rows_of
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 mp = pytest.importorskip("mpmath", reason="the reference wants mpmath")
 
 from voussoir import theory  # noqa: E402
@@ -21,12 +20,6 @@ THEORIES = ("heyman", "ccr", "milankovitch")
 ALLOWED = np.array([4e-15, 8e-15, 2e-14])  #: Relative errors allowed in hinge, thickness and thrust
 EPSILON = np.finfo(float).eps
 GENERATOR = np.random.default_rng(20140901)
-
-
-def read_table(name: str) -> list[dict[str, str]]:
-    """Rows of a table, whose first line may be a remark."""
-    with (DATA / name).open(newline="", encoding="utf-8") as lines:
-        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
 def exact_embrace(alpha):
@@ -127,7 +120,8 @@ def test_curve_has_all_its_digits(name):
             assert relative_error(found, exact) <= 1e-14, (name, angle, beta)
 
 
-@pytest.mark.parametrize("row", read_table("theory_golden.csv"), ids=lambda row: f"{row['alpha_deg']}-{row['theory']}")
+@pytest.mark.parametrize(
+    "row", rows_of(DATA / "theory_golden.csv"), ids=lambda row: f"{row['alpha_deg']}-{row['theory']}")
 def test_golden_values(row):
     angle = math.radians(float(row["alpha_deg"]))
     limit = theory.limits(row["theory"])["alpha_limit"]
@@ -160,7 +154,7 @@ def test_printed_forms_lose_their_digits_on_shallow_arches(alpha, beta_error, et
 
 
 def test_discrete_arches_are_exact():
-    rows = read_table("arch_exact.csv")
+    rows = rows_of(DATA / "arch_exact.csv")
     assert len(rows) > 300
     status = {"none_stable": "none_admissible", "always_stable": "stands_always", "found": "found"}
     for row in rows:

@@ -1,19 +1,13 @@
 """`voussoir theory` at the command line, and the benchmark's own arithmetic."""
 
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+import theory_times as bench_theory
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir import theory  # noqa: E402
-from voussoir.command.main import main  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-import theory_times as bench_theory  # noqa: E402
+from voussoir import theory
+from voussoir.command.main import main
 
 
 def test_table_has_a_line_for_each_theory(capsys):

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
 
 from voussoir import theory  # noqa: E402

@@ -1,30 +1,21 @@
 """Every analytic figure that the paper prints, to the printed digit, from the Fortran module."""
 
-import csv
 import math
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
 
 import numpy as np
 import pytest
+from dda_command import rows_of
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir import theory  # noqa: E402
+from voussoir import theory
 
 ROOT = Path(__file__).resolve().parents[2]
 
-
-def read_table(path: Path) -> list[dict[str, str]]:
-    """Rows of a table whose first line is a remark."""
-    with path.open(newline="", encoding="utf-8") as lines:
-        return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
-PRINTED = read_table(ROOT / "tests" / "data" / "paper_analytic.csv")
+PRINTED = rows_of(ROOT / "tests" / "data" / "paper_analytic.csv")
 DDA = {
     (row["table"], float(row["alpha_deg"]), row["blocks"], float(row["beta_imposed_deg"] or 0)): row
-    for row in read_table(ROOT / "input" / "paper" / "paper_tables.csv")
+    for row in rows_of(ROOT / "input" / "paper" / "paper_tables.csv")
 }
 TABLE_ANGLE = {"1": 90.0, "2": 90.0, "3": 140.0}  #: Half angle of the tables whose rows differ in something else [deg]
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
+from dda_command import rows_of
 
-np = pytest.importorskip("numpy")
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
-voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
+import voussoir  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.deck.traffic import Vehicle, pass_over, read_vehicles, sample_list, worst_convoy  # noqa: E402
 
@@ -131,8 +131,7 @@ def test_command_prints_the_rule_and_writes_decks_that_give_the_same(tmp_path: P
     assert main(words) == 0
     printed = capsys.readouterr().out
     assert "effective width: w = 1.5 m + h" in printed and "load [kN/m]" in printed
-    with (out / "traffic.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(out / "traffic.csv")
     assert [row["effective_width_m"] for row in rows] == ["1.7", "1.7"]
     assert float(rows[0]["load_kN_per_m"]) == pytest.approx(2 * 112.8 / 1.7, rel=1e-12)
     factor = min(float(row["load_factor"]) for row in rows)

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import math
-import os
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+from dda_command import rows_of
 
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-np = pytest.importorskip("numpy")
-
-from voussoir.command.main import main  # noqa: E402
-from voussoir.dda_program import find_input  # noqa: E402
-from voussoir_benches import validation_page  # noqa: E402
-from voussoir_benches.checks import Check  # noqa: E402
-from voussoir_benches.exact import (  # noqa: E402
+from voussoir.command.main import main
+from voussoir.dda_program import find_input
+from voussoir_benches import validation_page
+from voussoir_benches.checks import Check
+from voussoir_benches.exact import (
     ONSETS, chain_frequency, foot_acceleration, next_amplitude, quarter_period, roof_wedge, snap_load, stick_slip,
 )
-from voussoir_benches.expectations import Measured  # noqa: E402
-from voussoir_benches.scene import Scene  # noqa: E402
-from voussoir_benches.validation import titles_of  # noqa: E402
-from voussoir_benches.validation_plot import diagonal, has_diagonal, has_history, history  # noqa: E402
-from voussoir_benches.validation_run import Line, all_scenes, run_scene  # noqa: E402
-from voussoir_benches.validation_sketch import Shape, sketch  # noqa: E402
+from voussoir_benches.expectations import Measured
+from voussoir_benches.scene import Scene
+from voussoir_benches.validation import titles_of
+from voussoir_benches.validation_plot import diagonal, has_diagonal, has_history, history
+from voussoir_benches.validation_run import Line, all_scenes, run_scene
+from voussoir_benches.validation_sketch import Shape, sketch
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 DECKS = REPOSITORY / "input" / "benchmarks"
@@ -116,17 +113,11 @@ def command(*words: str | Path) -> int:
     return main(["validation", *map(str, words)])
 
 
-@pytest.fixture(autouse=True)
-def program(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("VOUSSOIR_DDA", os.environ.get("DDA", ""))
-
-
 def test_command_writes_table_and_page(tmp_path: Path, capsys) -> None:
     words = ["validation", "--out", str(tmp_path / "out"), "--decks", str(DECKS), "--halvings", "1"]
     assert main([*words, "--scenes", "free_fall", "stack"]) == 0
     assert "ok     free_fall: v after 1 s [m]: -4.905, error" in capsys.readouterr().out
-    with (tmp_path / "out" / "validation.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "out" / "validation.csv")
     names = 2 * ["free_fall"] + 3 * ["stack"] + 3 * ["stack current"]
     assert [row["scene"] for row in rows] == names
     assert float(rows[0]["computed"]) == pytest.approx(-4.905, rel=1e-12)

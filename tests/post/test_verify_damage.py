@@ -9,13 +9,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from test_campaign_safety import damage
+from test_verify import DECKS, HEAD, SCENES, run_scene
 
-pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-
-from test_campaign_safety import damage  # noqa: E402
-from test_verify import DECKS, HEAD, SCENES, run_deck  # noqa: E402
-
-from voussoir.command.main import main  # noqa: E402
+from voussoir.command.main import main
 
 MUTANTS = int(os.environ.get("MUTANTS", "12"))  #: Mutants of each folder; the target fuzz asks for more
 #: Folders whose tables have rows of every kind
@@ -72,7 +69,7 @@ def refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_damaged_table_is_refused_in_a_line(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    whole = run_deck(tmp_path, DECKS["fill"])
+    whole = run_scene(tmp_path, DECKS["fill"])
     for what, change in DAMAGE.items():
         folder = tmp_path / "damaged"
         shutil.rmtree(folder, ignore_errors=True)
@@ -88,7 +85,7 @@ def test_a_damaged_table_is_refused_in_a_line(tmp_path: Path, name: str, capsys:
 def test_a_cell_that_is_no_number_is_named(
     tmp_path: Path, name: str, text: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = run_deck(tmp_path, DECKS["fill"])
+    folder = run_scene(tmp_path, DECKS["fill"])
     column = {"results": "critical", "joints": "force_x", "blocks": "x", "proof_forces": "x_1", "proof_motion": "spin"}
     table = folder / f"{name}.csv"
     head, first, *rest = table.read_text().split("\n")
@@ -105,7 +102,7 @@ def test_a_cell_that_is_no_number_is_named(
 def test_swapped_tables_are_refused(
     tmp_path: Path, one: str, other: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = run_deck(tmp_path, DECKS["fill"])
+    folder = run_scene(tmp_path, DECKS["fill"])
     texts = [(folder / f"{name}.csv").read_bytes() for name in (one, other)]
     (folder / f"{one}.csv").write_bytes(texts[1])
     (folder / f"{other}.csv").write_bytes(texts[0])
@@ -114,8 +111,8 @@ def test_swapped_tables_are_refused(
 
 @pytest.mark.parametrize("name", TABLES)
 def test_tables_of_another_run_are_refused(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = run_deck(tmp_path / "one", DECKS["fill"])
-    other = run_deck(tmp_path / "two", DECKS["an arch that is not"])
+    folder = run_scene(tmp_path / "one", DECKS["fill"])
+    other = run_scene(tmp_path / "two", DECKS["an arch that is not"])
     (folder / f"{name}.csv").write_bytes((other / f"{name}.csv").read_bytes())
     refused(folder, capsys)
 
@@ -124,7 +121,7 @@ def test_tables_of_another_run_are_refused(tmp_path: Path, name: str, capsys: py
                                   "&sweep friction_deg linked\n  3\n", "arch%rings\n  0\n",
                                   "fill%height\n  nan\n", "arch%spans\n  1e-400\n", "search%parameter\n", "\xff\n"])
 def test_a_damaged_record_is_refused_in_a_line(tmp_path: Path, line: str, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = run_deck(tmp_path, DECKS["fill"])
+    folder = run_scene(tmp_path, DECKS["fill"])
     record = folder / "deck.record"
     record.write_bytes(record.read_bytes() + line.encode("latin-1"))
     refused(folder, capsys)
@@ -136,7 +133,7 @@ def test_a_damaged_record_is_refused_in_a_line(tmp_path: Path, line: str, capsys
 def test_mutants_of_a_folder_are_refused_or_whole(
     tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole = run_deck(tmp_path, DECKS[name])
+    whole = run_scene(tmp_path, DECKS[name])
     dice = random.Random(name)
     for _ in range(MUTANTS):
         folder = tmp_path / "mutant"
@@ -157,7 +154,7 @@ def test_mutants_of_a_folder_are_refused_or_whole(
 
 def test_a_block_without_area_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scene = SCENES["bolts"]
-    folder = run_deck(tmp_path, HEAD + scene[1], scene[0])
+    folder = run_scene(tmp_path, HEAD + scene[1], scene[0])
     table = folder / "blocks.csv"
     rows = [line.split(",") for line in table.read_text().split("\n")]
     for row in rows:

@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import random
 import re
-import sys
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from dda_command import rows_of
+from live_assemblies import random_wall
+from test_loading_path import wall
+from test_verify import HEAD, run_scene
 
-pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-
-from test_verify import HEAD, rows_of, run_deck  # noqa: E402
-
-from voussoir.command.main import main  # noqa: E402
-from voussoir.verify.rational import Factor, sine_cosine  # noqa: E402
-from voussoir.verify.simplex import find_best  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
-
-from live_assemblies import random_wall  # noqa: E402
-from test_loading_path import wall  # noqa: E402
+from voussoir.command.main import main
+from voussoir.verify.rational import Factor, sine_cosine
+from voussoir.verify.simplex import find_best
 
 REPOSITORY = Path(__file__).parents[2]
 ROUGH = "&joint friction_deg = 90 /\n&search /\n"
@@ -86,14 +79,13 @@ def test_a_block_turns_at_an_exact_push(tmp_path: Path, capsys: pytest.CaptureFi
     """A block of 2 by 2 and unit weight 3, pushed by 1 at its top: it turns at 12 times 1 over 2."""
     blocks = "block fixed\n-5 -1\n5 -1\n5 0\n-5 0\nblock\n0 0\n2 0\n2 2\n0 2\nlive block 2 0 2 1 0\n"
     material = "&material unit_weight = 3 /\n&joint friction_deg = 60 /\n"
-    ((low, high),) = intervals(run_deck(tmp_path, HEAD + material + TIGHT.format("load_factor"), blocks), capsys)
+    ((low, high),) = intervals(run_scene(tmp_path, HEAD + material + TIGHT.format("load_factor"), blocks), capsys)
     assert low <= 6.0 <= high and high - low < 1e-12 * 6.0
 
 
 @pytest.mark.parametrize("table", ["table1", "table2", "table3", "table4"])
 def test_arches_of_the_paper_are_proven(tmp_path: Path, table: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with (REPOSITORY / "tests" / "data" / "paper_exact.csv").open(newline="") as lines:
-        rows = [row for row in csv.DictReader(line for line in lines if line[0] != "#") if row["table"] == table]
+    rows = [row for row in rows_of(REPOSITORY / "tests" / "data" / "paper_exact.csv") if row["table"] == table]
     joints = table in ("table2", "table3")
     names = ("arch%joints_deg(2)", "beta_imposed_deg") if joints else ("voussoirs", "blocks")
     deck = f"&sweep parameter = '{names[0]}', values = {', '.join(row[names[1]] for row in rows)} /\n"
@@ -102,7 +94,7 @@ def test_arches_of_the_paper_are_proven(tmp_path: Path, table: str, capsys: pyte
     else:
         angles = ", ".join(row["alpha_deg"] for row in rows)
         deck += f"&sweep parameter = 'half_angle_deg', values = {angles}, linked = .true. /\n"
-    found = intervals(run_deck(tmp_path, ROUGH + deck), capsys)
+    found = intervals(run_scene(tmp_path, ROUGH + deck), capsys)
     assert len(found) == len(rows)
     for (low, high), row in zip(found, rows):
         assert low < float(row["eta_exact"]) < high
@@ -113,7 +105,7 @@ def test_arches_of_the_paper_are_proven(tmp_path: Path, table: str, capsys: pyte
 def test_limits_of_walls_are_proven(tmp_path: Path, seed: int, capsys: pytest.CaptureFixture[str]) -> None:
     source = random.Random(seed)
     friction = f"&joint friction_deg = {source.uniform(20.0, 42.0)!r} /\n"
-    folder = run_deck(tmp_path, HEAD + friction + TIGHT.format("load_factor"), random_wall(source))
+    folder = run_scene(tmp_path, HEAD + friction + TIGHT.format("load_factor"), random_wall(source))
     ((low, high),), (row,) = intervals(folder, capsys), rows_of(folder / "results.csv")
     assert low <= (float(row["exact_low"]) + float(row["exact_high"])) / 2.0 <= high
     assert high - low < 1e-12 * max(1.0, high)
@@ -124,7 +116,7 @@ def test_limits_of_brick_walls_are_proven(
     tmp_path: Path, units: int, courses: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
     deck = HEAD + "&joint friction_deg = 33.0 /\n" + TIGHT.format("horizontal_coefficient")
-    ((low, high),) = intervals(run_deck(tmp_path, deck, wall(units, courses)), capsys)
+    ((low, high),) = intervals(run_scene(tmp_path, deck, wall(units, courses)), capsys)
     assert 0.5 < low < high < 0.65 and high - low < 1e-12
 
 
@@ -143,7 +135,7 @@ def test_limits_of_brick_walls_are_proven(
     ],
 )
 def test_what_is_proven_is_said(tmp_path: Path, deck: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = run_deck(tmp_path, deck)
+    folder = run_scene(tmp_path, deck)
     capsys.readouterr()
     assert main(["verify", str(folder), "--exact"]) == 0
     out = capsys.readouterr().out
@@ -152,7 +144,7 @@ def test_what_is_proven_is_said(tmp_path: Path, deck: str, words: str, capsys: p
 
 def test_a_wrong_bound_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A limit in the row that is off by its eleventh digit, with forces that are right for it but for rounding."""
-    folder = run_deck(tmp_path, HEAD + TIGHT.format("load_factor"))
+    folder = run_scene(tmp_path, HEAD + TIGHT.format("load_factor"))
     text = (folder / "results.csv").read_text()
     (row,) = rows_of(folder / "results.csv")
     low, high = (float(row[name]) for name in ("exact_low", "exact_high"))
@@ -168,7 +160,7 @@ def test_a_wrong_bound_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 
 def test_too_many_joints_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = run_deck(tmp_path, "&arch voussoirs = 200, thickness_ratio = 0.12 /\n")
+    folder = run_scene(tmp_path, "&arch voussoirs = 200, thickness_ratio = 0.12 /\n")
     assert main(["verify", str(folder)]) == 0
     assert main(["verify", str(folder), "--exact"]) == 2
     assert "at most 200 joints" in capsys.readouterr().err
@@ -181,7 +173,7 @@ def test_lines_with_materials_of_a_file_are_proven(
     (tmp_path / "x.geo").write_text(LINES)
     (tmp_path / "x.ana").write_text(MATERIALS)
     head = "&scene kind = 'lines', geometry = 'x.geo', analysis = 'x.ana' /\n"
-    folder = run_deck(tmp_path, head + keys + TIGHT.format("horizontal_coefficient"))
+    folder = run_scene(tmp_path, head + keys + TIGHT.format("horizontal_coefficient"))
     assert len(intervals(folder, capsys)) == 1
     for name, old, new in (("x.ana", "20 1e6", "21 1e6"), ("x.ana", "35 0 0", "36 0 0"), ("x.ana", "27.5", "28"),
                            ("x.geo", "1.5 2.1 2", "1.5 2.1 3")):

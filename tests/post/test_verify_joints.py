@@ -7,11 +7,9 @@ import math
 import numpy as np
 import pytest
 
-pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-
-from voussoir.verify.contacts import Block, find_joints, make_block  # noqa: E402
-from voussoir.verify.proofs import Finding  # noqa: E402
-from voussoir.verify.tables import _check_strip  # noqa: E402
+from voussoir.verify.contacts import Block, find_joints, make_block
+from voussoir.verify.proofs import Finding
+from voussoir.verify.tables import _check_strip
 
 
 def springing(number: int, off: float) -> Block:

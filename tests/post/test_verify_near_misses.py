@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import random
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from dda_command import run_deck
+from live_assemblies import random_assembly
+from test_near_misses import TOLERANCE, lintel, rough_arch
+from test_verify import change_a_number
+from verify_bridges import misplaced
 
-pytest.importorskip("voussoir.verify.command", reason="PYTHONPATH wants python/")
-
-from voussoir.command.main import main  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
-
-from live_assemblies import random_assembly  # noqa: E402
-from test_near_misses import TOLERANCE, lintel, rough_arch  # noqa: E402
-from test_verify import change_a_number  # noqa: E402
-from verify_bridges import misplaced  # noqa: E402
+from voussoir.command.main import main
 
 #: A decision, and the push at collapse under either rule
 TASKS = {
@@ -33,11 +26,8 @@ TASKS = {
 def run_blocks(folder: Path, blocks: str, keys: str = "", scene: str = "", friction_deg: float = 40.0) -> Path:
     """Folder of the results of a file of blocks."""
     (folder / "a.blocks").write_text(blocks)
-    (folder / "a.nml").write_text(f"&scene kind = 'blocks', geometry = 'a.blocks'{scene} /\n"
-                                  f"&joint friction_deg = {friction_deg!r} /\n{keys}")
-    words = [os.environ["DDA"], "run", "a.nml", "--quiet"]
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    run_deck(folder, f"&scene kind = 'blocks', geometry = 'a.blocks'{scene} /\n"
+                     f"&joint friction_deg = {friction_deg!r} /\n{keys}", "--quiet", name="a")
     return folder / "a"
 
 

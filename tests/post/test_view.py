@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 pytest.importorskip("matplotlib")
 
+import voussoir  # noqa: E402
 from voussoir.command.main import main  # noqa: E402
 from voussoir.command.view import block_at, pictures_of_case, words_of  # noqa: E402
 

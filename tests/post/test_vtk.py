@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
-np = pytest.importorskip("numpy")
 pytest.importorskip("vtkmodules", reason="VTK is not installed: skipped")
-pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
 
 from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader  # noqa: E402
 
+import voussoir  # noqa: E402
 from voussoir import results  # noqa: E402
 
 DECK = """&arch voussoirs = 8, thickness_ratio = 0.09 /
@@ -27,10 +25,7 @@ DECK = """&arch voussoirs = 8, thickness_ratio = 0.09 /
 @pytest.fixture(scope="module")
 def fall(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
     """An arch of eight blocks that falls."""
-    folder = tmp_path_factory.mktemp("fall")
-    (folder / "fall.nml").write_text(DECK)
-    subprocess.run([os.environ["DDA"], "run", "fall.nml", "--quiet"], cwd=folder, check=True)
-    return results.read(folder / "fall")
+    return voussoir.run(DECK, out=tmp_path_factory.mktemp("fall"))
 
 
 def grid_of(file: Path):
@@ -106,10 +101,7 @@ def test_joint_forces_and_states_are_those_of_the_table(fall: results.Results) -
 def test_blocks_in_time_carry_their_times_and_states(tmp_path: Path) -> None:
     """A block that slides down a slope: times of the index, displacement, contact states."""
     deck = Path(__file__).resolve().parents[2] / "input/benchmarks/incline_30.nml"
-    options = ["--set", "output%frames=4", "--set", "output%vtu=.true."]
-    command = [os.environ["DDA"], "run", deck, "--quiet", "--out", tmp_path, *options]
-    subprocess.run(command, check=True)
-    run = results.read(tmp_path)
+    run = voussoir.run(deck, out=tmp_path, **{"output%frames": 4, "output%vtu": True})
     pictures, files = run.frames_of(1), files_of(run)
     index = ElementTree.parse(run.pvd(1)).getroot().findall("Collection/DataSet")
     times = sorted({float(item.attrib["timestep"]) for item in index})

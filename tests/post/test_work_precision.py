@@ -1,34 +1,24 @@
 """`voussoir work-precision`: the linear programs against exact values, and a small run."""
 
-import csv
 import math
-import os
 
 import numpy as np
 import pytest
+from dda_command import rows_of
 
-voussoir = pytest.importorskip("voussoir", reason="PYTHONPATH wants the build's python folder")
-
-from voussoir import theory  # noqa: E402
-from voussoir.command.main import main  # noqa: E402
-from voussoir.deck.run import Deck  # noqa: E402
-from voussoir_benches import limit_lp  # noqa: E402
-from voussoir_benches.limit_lp_blocks import assembly_of, limit_factor  # noqa: E402
-from voussoir_benches.work_precision_fronts import Panel, Point, front  # noqa: E402
-from voussoir_benches.work_precision_motion import MotionPoint, order, pendulum_quarter  # noqa: E402
-from voussoir_benches.work_precision_page import answer_words, draw, front_table, motion_table, race_table  # noqa: E402
-from voussoir_benches.work_precision_runs import Arch, Race  # noqa: E402
-from voussoir_benches.work_precision_scenes import ORIGINAL, RIGID, three_rings, wall  # noqa: E402
+import voussoir
+from voussoir import theory
+from voussoir.command.main import main
+from voussoir.deck.run import Deck
+from voussoir_benches import limit_lp
+from voussoir_benches.limit_lp_blocks import assembly_of, limit_factor
+from voussoir_benches.work_precision_fronts import Panel, Point, front
+from voussoir_benches.work_precision_motion import MotionPoint, order, pendulum_quarter
+from voussoir_benches.work_precision_page import answer_words, draw, front_table, motion_table, race_table
+from voussoir_benches.work_precision_runs import Arch, Race
+from voussoir_benches.work_precision_scenes import ORIGINAL, RIGID, three_rings, wall
 
 needs_scipy = pytest.mark.skipif(limit_lp.scipy_version() is None, reason="scipy is missing")
-needs_dda = pytest.mark.skipif("DDA" not in os.environ, reason="the program is named by DDA")
-
-
-@pytest.fixture(autouse=True)
-def _program(monkeypatch):
-    """The program under test."""
-    if "DDA" in os.environ:
-        monkeypatch.setenv("VOUSSOIR_DDA", os.environ["DDA"])
 
 
 @needs_scipy
@@ -87,7 +77,6 @@ def test_methods_without_an_answer_are_drawn_beside_those_with_one(tmp_path):
 
 
 @needs_scipy
-@needs_dda
 @pytest.mark.parametrize("scene", [wall(3, 3), wall(8, 5), three_rings(2, 12)])
 @pytest.mark.parametrize("solver", ["highs-ds", "highs-ipm"])
 def test_program_of_blocks_knows_the_associated_limit(scene, solver):
@@ -124,14 +113,12 @@ def test_small_pendulum_swings_as_huygens_has_it():
     assert pendulum_quarter(math.pi / 2.0, 1.0) == pytest.approx(1.854074677301372, rel=1e-14)
 
 
-@needs_dda
 def test_motion_alone_converges_as_it_should(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     words = ["work-precision", "--motion", "--repeats", "1", "--out", str(tmp_path)]
     assert main(words) == 0
     assert "| pendulum: quarter period | 2.0 |" in capsys.readouterr().out
-    with (tmp_path / "work_precision_motion.csv").open() as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of(tmp_path / "work_precision_motion.csv")
     worst = {row["scene"]: float(row["error"]) for row in reversed(rows)}
     least = {row["scene"]: float(row["error"]) for row in rows}
     assert worst["incline: way"] < 1e-8 and worst["bounce: second top"] < 1e-8
@@ -140,7 +127,6 @@ def test_motion_alone_converges_as_it_should(tmp_path, capsys):
     assert not (tmp_path / "work_precision.csv").exists()
 
 
-@needs_dda
 def test_small_run_writes_tables_and_figures(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     words = ["work-precision", "--angles", "90", "--voussoirs", "6", "--repeats", "1", "--scenes", "arch"]
@@ -148,8 +134,7 @@ def test_small_run_writes_tables_and_figures(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert printed == (tmp_path / "work_precision.md").read_text()
     assert "| 90 | 6 |" in printed and f"| arch | {RIGID} |" in printed
-    with (tmp_path / "work_precision.csv").open() as lines:
-        rows = list(csv.DictReader(lines))
+    rows = rows_of(tmp_path / "work_precision.csv")
     fine = [row for row in rows if row["method"] == RIGID and "tolerance = 1e-08" in row["setting"]]
     assert float(fine[0]["error"]) < 1e-8
     original = [float(row["error"]) for row in rows if row["method"] == "Shi's scheme"]
@@ -159,7 +144,6 @@ def test_small_run_writes_tables_and_figures(tmp_path, capsys):
         assert (tmp_path / f"work_precision_arch.{ending}").stat().st_size > 5000
 
 
-@needs_dda
 def test_race_alone_writes_no_diagram(tmp_path, capsys):
     words = ["work-precision", "--race", "--repeats", "1", "--angles", "60", "--voussoirs"]
     assert main([*words, "4", "8", "--out", str(tmp_path)]) == 0
@@ -168,7 +152,6 @@ def test_race_alone_writes_no_diagram(tmp_path, capsys):
     assert not (tmp_path / "work_precision.csv").exists()
 
 
-@needs_dda
 def test_what_the_plan_saves_is_reported_and_the_answer_stays(tmp_path, capsys):
     words = ["work-precision", "--plan", "--voussoirs", "12", "--repeats", "2", "--out"]
     assert main([*words, str(tmp_path)]) == 0
