@@ -6,7 +6,7 @@ import itertools
 import math
 from pathlib import Path
 
-from dda_command import rows_of, run_dda
+from dda_command import rows_of, run_deck
 
 Point = tuple[float, float]
 
@@ -27,19 +27,38 @@ def bar(start: Point, end: Point, words: str) -> str:
     return f"bar {start[0]!r} {start[1]!r} {end[0]!r} {end[1]!r} {words}\n"
 
 
+def box(x: float, y: float, width: float, height: float, words: str = "") -> str:
+    """A rectangle of a file of blocks, by its lower left corner."""
+    return block([(x, y), (x + width, y), (x + width, y + height), (x, y + height)], words)
+
+
+def wall(courses: int, bricks: int, length: float, height: float, beyond: float = 0.0) -> str:
+    """Bricks in running bond, half ones at the ends of every other course, on a fixed floor that goes beyond them."""
+    end = bricks * length
+    text = box(0.0 - beyond, -height, end + 2.0 * beyond, height, "fixed")
+    for course in range(courses):
+        heads = [0.0, *((brick + 0.5 * (course % 2)) * length for brick in range(1 - course % 2, bricks)), end]
+        text += "".join(box(left, course * height, right - left, height) for left, right in zip(heads, heads[1:]))
+    return text
+
+
 def on_slope(angle_deg: float, width: float = 1.0) -> str:
     """A block on a fixed slope that rises to the right."""
     base = turned([(-6.0, -3.0), (6.0, -3.0), (6.0, 0.0), (-6.0, 0.0)], angle_deg)
     return block(base, "fixed") + block(turned([(0.0, 0.0), (width, 0.0), (width, 1.0), (0.0, 1.0)], angle_deg))
 
 
-def run_blocks(folder: Path, blocks: str, deck: str) -> dict[str, str]:
-    """Run a file of blocks in the folder; its tables are in folder/out."""
-    (folder / "scene.blocks").write_text(blocks)
-    (folder / "scene.nml").write_text("&scene kind='blocks' geometry='scene.blocks' /\n" + deck)
-    done = run_dda("run", "scene.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode in (0, 3), done.stderr
-    return rows_of(folder / "out" / "results.csv")[0]
+def run_scene(folder: Path, blocks: str, groups: str, *options: str, accepted: tuple[int, ...] = (0,)) -> Path:
+    """Run a file of blocks in the folder: the folder of its tables."""
+    (folder / "x.blocks").write_text(blocks)
+    deck = f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n"
+    run_deck(folder, deck, "--out", "out", "--quiet", *options, accepted=accepted)
+    return folder / "out"
+
+
+def run_blocks(folder: Path, blocks: str, groups: str) -> dict[str, str]:
+    """The row of results of a file of blocks, which may be undecided."""
+    return rows_of(run_scene(folder, blocks, groups, accepted=(0, 3)) / "results.csv")[0]
 
 
 def bar_forces(folder: Path) -> list[float]:

@@ -6,7 +6,7 @@ import math
 import random
 from dataclasses import dataclass
 
-from block_scene import Point, block
+from block_scene import box
 
 G = 9.81
 DENSITY = 2240.0
@@ -21,12 +21,6 @@ class MovingWall:
     #: Energy of motion and of bars that it begins with, and what its bricks gain as they fall freely for one step [J/m]
     begun: float
     fall: float
-
-
-def box(left: float, low: float, width: float, height: float, words: str = "") -> str:
-    """A rectangle of a file of blocks."""
-    corners: list[Point] = [(left, low), (left + width, low), (left + width, low + height), (left, low + height)]
-    return block(corners, words)
 
 
 def brickwork(pick: random.Random, courses: int, columns: int, width: float, height: float) -> str:

@@ -7,17 +7,9 @@ import math
 from pathlib import Path
 
 import pytest
-from block_scene import block
-from dda_command import run_deck
+from block_scene import block, run_scene
 
 SQUARE = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]
-
-
-def run(folder: Path, blocks: str, keys: str) -> None:
-    """Run a scene of blocks."""
-    (folder / "scene.blocks").write_text(blocks)
-    run_deck(
-        folder, "&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + keys, "--out", "out", "--quiet", name="deck")
 
 
 def table(folder: Path, name: str) -> list[dict[str, float]]:
@@ -36,7 +28,7 @@ def test_block_between_dashpots_slows_down_by_its_impedance(
     scene = block(SQUARE, words) + "measure 1 0.5\n"
     scene += "".join(f"absorb 0 {y} 2 {y} p_speed 20 s_speed 8\n" for y in (0, 1))
     mode = f"&analysis mode = 'dynamic', geometry = '{geometry}', duration = 0.1, time_step = 5e-4, steps = 1000"
-    run(tmp_path, scene, f"&load gravity = 0 /\n{mode}, unknowns = 3 /\n")
+    run_scene(tmp_path, scene, f"&load gravity = 0 /\n{mode}, unknowns = 3 /\n")
     last = table(tmp_path, "points")[-1]
     name, start = ("vy", velocity[1]) if velocity[1] else ("vx", velocity[0])
     assert last[name] == pytest.approx(start * math.exp(-rate * 0.1), rel=1e-3)
@@ -45,7 +37,7 @@ def test_block_between_dashpots_slows_down_by_its_impedance(
 def test_direction_that_is_not_absorbed_is_free(tmp_path: Path) -> None:
     scene = block(SQUARE, "velocity 0.1 0.2 0") + "absorb 0 0 2 0 y\nmeasure 1 0.5\n"
     mode = "&analysis mode = 'dynamic', duration = 0.05, time_step = 1e-3, steps = 100, unknowns = 3 /\n"
-    run(tmp_path, scene, "&load gravity = 0 /\n" + mode)
+    run_scene(tmp_path, scene, "&load gravity = 0 /\n" + mode)
     last = table(tmp_path, "points")[-1]
     assert last["u"] == pytest.approx(0.1 * 0.05, rel=1e-12)
     assert abs(last["vy"]) < 1e-6
@@ -61,7 +53,7 @@ def test_pulse_in_a_column_does_not_come_back(tmp_path: Path, geometry: str, bas
         scene += f"load {x} 50\n"
         for i in range(parts + 1):
             scene += f"{duration * i / parts!r} 0 {-1e5 * math.sin(math.pi * i / parts) ** 2!r}\n"
-    run(
+    run_scene(
         tmp_path,
         scene,
         "&material density = 2500, young = 2.5e9, poisson = 0 /\n&load gravity = 0 /\n"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from dda_command import rows_of, run_deck
+from block_scene import run_scene
+from dda_command import rows_of
 
 Point = tuple[float, float]
 Polygon = list[Point]
@@ -37,11 +37,7 @@ def scene(move: Callable[[Point], Point], order: tuple[int, ...] = (0, 1, 2), fi
 def run(folder: Path, blocks: str, deck: str, geometry: str) -> Path:
     """Run a deck on these blocks."""
     folder.mkdir()
-    (folder / "x.blocks").write_text(blocks)
-    run_deck(
-        folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = '{geometry}' /\n{deck}",
-        "--out", folder / "out", "--quiet")
-    return folder / "out"
+    return run_scene(folder, blocks, f"&analysis geometry = '{geometry}' /\n{deck}")
 
 
 def critical(folder: Path, blocks: str, deck: str, geometry: str) -> float:

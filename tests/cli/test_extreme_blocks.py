@@ -6,26 +6,15 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_dda, run_deck
+from block_scene import block, box, run_scene
+from dda_command import rows_of, run_dda
 
 BASE = "block fixed\n-10 -1\n10 -1\n10 0\n-10 0\n"
 
 
-def block(*corners: tuple[float, float], words: str = "") -> str:
-    """Text of one block."""
-    return f"block {words}\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
-
-
-def rectangle(x: float, y: float, width: float, height: float) -> str:
-    """Text of an upright block."""
-    return block((x, y), (x + width, y), (x + width, y + height), (x, y + height))
-
-
 def run(folder: Path, blocks: str, groups: str, name: str = "results") -> list[dict[str, str]]:
     """Rows of a table of a run."""
-    (folder / "x.blocks").write_text(blocks)
-    run_deck(folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n", "--out", folder / "out", "--quiet")
-    return rows_of(folder / "out" / f"{name}.csv")
+    return rows_of(run_scene(folder, blocks, groups) / f"{name}.csv")
 
 
 @pytest.mark.parametrize("half_deg", [3.0, 5.0, 85.0])
@@ -36,8 +25,8 @@ def test_a_smooth_wedge_slips_far_into_its_notch_and_rests(tmp_path: Path, half_
         [(0.0, 0.0), (0.0, -1.0), (2.0 * slope + 1.0, -1.0), (2.0 * slope, 2.0)],
         [(0.0, 0.0), (-2.0 * slope, 2.0), (-2.0 * slope - 1.0, -1.0), (0.0, -1.0)],
     ]
-    blocks = "".join(block(*side, words="fixed") for side in sides)
-    blocks += block((0.0, 0.0), (slope, 1.0), (-slope, 1.0))
+    blocks = "".join(block(side, "fixed") for side in sides)
+    blocks += block([(0.0, 0.0), (slope, 1.0), (-slope, 1.0)])
     groups = "&analysis geometry = 'current' /\n&joint friction_deg = 0 /\n"
     (row,) = run(tmp_path, blocks, groups + "&material young = 5e12 /")
     assert row["verdict"] == "stable"
@@ -45,7 +34,7 @@ def test_a_smooth_wedge_slips_far_into_its_notch_and_rests(tmp_path: Path, half_
 
 @pytest.mark.parametrize("step", [0.1, 1.0, 10.0])
 def test_long_steps_let_nothing_through_the_floor(tmp_path: Path, step: float) -> None:
-    blocks = BASE + rectangle(-5.0, 0.0, 2.0, 0.5) + "measure -4.0 0.25\n"
+    blocks = BASE + box(-5.0, 0.0, 2.0, 0.5) + "measure -4.0 0.25\n"
     motion = "mode = 'dynamic', geometry = 'current', max_displacement_ratio = 1.0"
     groups = f"&analysis {motion}, time_step = {step}, duration = 1.5 /\n"
     groups += "&joint friction_deg = 20 /\n&load gravity_direction_deg = -60 /"
@@ -57,7 +46,7 @@ def test_long_steps_let_nothing_through_the_floor(tmp_path: Path, step: float) -
 
 def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(tmp_path: Path) -> None:
     """The middle of the bracket about tan(phi) is tan(phi): nothing rests there, nothing moves."""
-    blocks = BASE + rectangle(-0.345, 0.0, 0.62, 0.941) + rectangle(-0.516, 0.941, 0.778, 1.047)
+    blocks = BASE + box(-0.345, 0.0, 0.62, 0.941) + box(-0.516, 0.941, 0.778, 1.047)
     groups = "&joint friction_deg = 7.61 /\n&material young = 5e13 /\n"
     groups += "&analysis geometry = 'current' /\n&search parameter = 'horizontal_coefficient' /"
     (row,) = run(tmp_path, blocks, groups)
@@ -67,7 +56,7 @@ def test_a_search_steps_aside_of_the_value_that_is_critical_to_the_last_digit(tm
 
 @pytest.mark.parametrize("far", ["1e11", "1e15", "-1e30"])
 def test_a_block_led_farther_than_any_step_goes_is_undecided(tmp_path: Path, far: str) -> None:
-    blocks = BASE + rectangle(0.0, 0.0, 1.0, 1.0) + f"displacement 0.5 0.5 0 {far}\n"
+    blocks = BASE + box(0.0, 0.0, 1.0, 1.0) + f"displacement 0.5 0.5 0 {far}\n"
     (tmp_path / "x.blocks").write_text(blocks)
     (tmp_path / "x.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n"
                                     "&analysis mode = 'dynamic', geometry = 'current', duration = 0.01 /\n")

@@ -7,7 +7,8 @@ import re
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_dda
+from block_scene import block, run_blocks
+from dda_command import rows_of
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 
@@ -35,17 +36,7 @@ def rows(folder: Path, table: str) -> list[Row]:
 def run(folder: Path, blocks: str, groups: str) -> Row:
     """The row of a scene of moving blocks."""
     folder.mkdir(exist_ok=True)
-    (folder / "x.blocks").write_text(blocks)
-    (folder / "x.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}\n")
-    done = run_dda("run", "x.nml", "--out", "out", "--quiet", cwd=folder)
-    assert done.returncode in (0, 3), done.stderr
-    (row,) = rows(folder, "results")
-    return row
-
-
-def polygon(corners: list[Point]) -> str:
-    """Text of one block."""
-    return "block\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
+    return run_blocks(folder, blocks, groups)
 
 
 def arch_on_led_supports(count: int, ratio: float, half_angle_deg: float, way: str, led: float, ramp: str) -> str:
@@ -56,12 +47,12 @@ def arch_on_led_supports(count: int, ratio: float, half_angle_deg: float, way: s
         angle = -half + 2 * half * joint / count
         return radius * math.sin(angle), radius * math.cos(angle)
 
-    text = [polygon([place(inner, i), place(outer, i), place(outer, i + 1), place(inner, i + 1)]) for i in range(count)]
+    text = [block([place(inner, i), place(outer, i), place(outer, i + 1), place(inner, i + 1)]) for i in range(count)]
     for side, (x, y) in zip((0, count), WAYS[way], strict=True):
         lower, upper = place(inner, side), place(outer, side)
         down = math.copysign(3.0, side - 0.5) * math.cos(half), -3.0 * math.sin(half)
         far = [(point[0] + down[0], point[1] + down[1]) for point in (upper, lower)]
-        text.append(polygon([lower, upper, *far]))
+        text.append(block([lower, upper, *far]))
         for share in (0.2, 0.8):
             held = [lower[k] + share * (upper[k] - lower[k]) + 0.5 * down[k] for k in (0, 1)]
             if ramp:

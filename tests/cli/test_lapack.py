@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from block_scene import wall
 from dda_command import rows_of, run_dda
 
 #: Cases of walls
@@ -16,18 +17,6 @@ CASES = {
     "path": "&search parameter = 'horizontal_coefficient' /\n",
     "deformable": "&analysis unknowns = 6 /\n&load horizontal_coefficient = 0.1 /\n",
 }
-
-
-def wall(courses: int, bricks: int) -> str:
-    """Bricks of 2 by 1 in running bond on a fixed floor, half a brick at the ends of every other course."""
-    text = f"block fixed\n0 -1\n{2 * bricks} -1\n{2 * bricks} 0\n0 0\n"
-    for course in range(courses):
-        heads = [2 * brick for brick in range(bricks + 1)]
-        if course % 2:
-            heads = [0, *(head + 1 for head in heads[:-1]), 2 * bricks]
-        for left, right in zip(heads, heads[1:]):
-            text += f"block\n{left} {course}\n{right} {course}\n{right} {course + 1}\n{left} {course + 1}\n"
-    return text
 
 
 def run(folder: Path, out: str, *options: str) -> dict[str, list[dict[str, str]]]:
@@ -44,7 +33,7 @@ def run(folder: Path, out: str, *options: str) -> dict[str, list[dict[str, str]]
 
 def write(folder: Path, case: str, courses: int) -> None:
     """Write a deck of four frictions and its wall."""
-    (folder / "wall.blocks").write_text(wall(courses, courses))
+    (folder / "wall.blocks").write_text(wall(courses, courses, 2.0, 1.0))
     (folder / "wall.nml").write_text("&scene kind = 'blocks', geometry = 'wall.blocks' /\n" + CASES[case] +
                                      "&sweep parameter = 'friction_deg', values = 25, 30, 35, 40 /\n")
 

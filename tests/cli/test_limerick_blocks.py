@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_dda, run_deck
+from block_scene import run_scene
+from dda_command import rows_of, run_dda
 
 GROUND = "block fixed\n -2 -1\n 4 -1\n 4 0\n -2 0\n"
 BLOCK = "block\n 0 0\n 1 0\n 1 2\n 0 2\n"
@@ -31,9 +32,7 @@ def portal(scale: float = 1.0, x: float = 0.0, y: float = 0.0) -> str:
 
 def run(folder: Path, blocks: str, groups: str = MATERIAL + MODE, *options: str) -> dict[str, str]:
     """The row of results.csv of a deck of blocks."""
-    (folder / "x.blocks").write_text(blocks)
-    run_deck(folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{groups}", "--quiet", *options)
-    (row,) = rows_of(folder / "x" / "results.csv")
+    (row,) = rows_of(run_scene(folder, blocks, groups, *options) / "results.csv")
     return row
 
 
@@ -85,10 +84,10 @@ def test_held_line_carries_every_block_that_it_crosses(tmp_path: Path) -> None:
 
 def test_measured_point_ends_where_its_corner_does(tmp_path: Path) -> None:
     row = run(tmp_path, GROUND + BLOCK + "measure 1 2\nmeasure 0.5 0\n")
-    points = rows_of(tmp_path / "x" / "points.csv")
+    points = rows_of(tmp_path / "out" / "points.csv")
     assert [points[0]["step"], points[-1]["step"]] == ["0", row["steps"]]
     assert len(points) == 2 * (int(row["steps"]) + 1)
-    corner = next(line for line in rows_of(tmp_path / "x" / "blocks.csv")
+    corner = next(line for line in rows_of(tmp_path / "out" / "blocks.csv")
                   if (line["block"], line["x"], line["y"]) == ("2", "1", "2"))
     last = points[-2]
     assert float(last["u"]) == pytest.approx(float(corner["u"]), abs=1e-15)
@@ -104,7 +103,7 @@ def test_stress_at_the_beginning_lets_go(tmp_path: Path) -> None:
     """
     pressed = BLOCK.replace("block", "block stress -1e3 0 0")
     run(tmp_path, pressed + "fix 0.5 0.5\nfix 0.5 1.5\nmeasure 0 1\nmeasure 1 1\n")
-    left, right = rows_of(tmp_path / "x" / "points.csv")[-2:]
+    left, right = rows_of(tmp_path / "out" / "points.csv")[-2:]
     assert float(right["u"]) - float(left["u"]) == pytest.approx(0.96e-6, rel=1e-4)
 
 
@@ -113,7 +112,8 @@ def test_joint_of_one_corner_says_its_force(tmp_path: Path) -> None:
     tip = polygon((0.5, 0), (1.0, 1.0), (0, 1.0))
     walls = "".join(polygon((x, 0.5), (x + 1, 0.5), (x + 1, 1), (x, 1), head="block fixed") for x in (-1.0, 1.0))
     run(tmp_path, GROUND.replace("-1", "-2") + tip + walls)
-    (joint,) = (row for row in rows_of(tmp_path / "x" / "joints.csv") if {row["block_1"], row["block_2"]} == {"1", "2"})
+    joints = rows_of(tmp_path / "out" / "joints.csv")
+    (joint,) = (row for row in joints if {row["block_1"], row["block_2"]} == {"1", "2"})
     assert float(joint["normal_force"]) == pytest.approx(10e3, rel=1e-2)
     assert joint["x_intrados"] == joint["x_extrados"]
 
@@ -122,7 +122,7 @@ def test_two_joints_between_two_blocks_share_the_weight(tmp_path: Path) -> None:
     """A bridge of two feet on one ground: half the weight each."""
     bridge = polygon((0, 0), (0.5, 0), (0.5, 1), (1.5, 1), (1.5, 0), (2, 0), (2, 2), (0, 2))
     run(tmp_path, GROUND + bridge)
-    forces = [float(row["normal_force"]) for row in rows_of(tmp_path / "x" / "joints.csv")]
+    forces = [float(row["normal_force"]) for row in rows_of(tmp_path / "out" / "joints.csv")]
     assert forces == pytest.approx([30e3, 30e3], rel=1e-3)
 
 

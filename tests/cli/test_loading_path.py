@@ -5,26 +5,15 @@ import re
 from pathlib import Path
 
 import pytest
+from block_scene import wall
 from dda_command import rows_of, run_dda, run_deck
 
 BLOCK = "block\n{0} {1}\n{2} {1}\n{2} {3}\n{0} {3}\n"
 
 
-def wall(units: int, courses: int) -> str:
-    """Bricks of 2 m by 1 m in running bond on fixed ground, half bricks at the ends."""
-    length = 2.0 * units
-    text = "block fixed\n-1 -1\n{0} -1\n{0} 0\n-1 0\n".format(length + 1.0)
-    for course in range(courses):
-        inner = [2.0 * k + (1.0 if course % 2 else 0.0) for k in range(units + 1)]
-        heads = sorted({0.0, length, *(x for x in inner if x <= length)})
-        for left, right in zip(heads, heads[1:]):
-            text += BLOCK.format(left, float(course), right, course + 1.0)
-    return text
-
-
 def run_wall(folder: Path, units: int, courses: int, friction: float, more: str) -> list[dict]:
     """Rows of a deck of a wall with a coefficient of friction."""
-    (folder / "wall.blocks").write_text(wall(units, courses))
+    (folder / "wall.blocks").write_text(wall(courses, units, 2.0, 1.0, 1.0))
     run_deck(
         folder, "&scene kind = 'blocks', geometry = 'wall.blocks' /\n"
         f"&joint friction_deg = {math.degrees(math.atan(friction))!r} /\n{more}", "--quiet", name="deck")
@@ -98,7 +87,7 @@ def test_what_limit_analysis_lets_stand_is_known_by_a_few_factorisations(tmp_pat
 
 def test_a_wall_without_ground_under_a_course_falls_by_a_few_factorisations(tmp_path: Path) -> None:
     """Half the wall stands beside the ground: its bricks fall, by friction of 30 degrees or none."""
-    text = wall(4, 8).replace("9.0 -1\n9.0 0", "3.0 -1\n3.0 0")
+    text = wall(8, 4, 2.0, 1.0, 1.0).replace("9.0 -1.0\n9.0 0.0", "3.0 -1.0\n3.0 0.0")
     (tmp_path / "half.blocks").write_text(text)
     run_deck(
         tmp_path, "&scene kind = 'blocks', geometry = 'half.blocks' /\n&joint friction_deg = 30 /\n",

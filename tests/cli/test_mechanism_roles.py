@@ -6,7 +6,8 @@ import math
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_deck
+from block_scene import box, run_scene
+from dda_command import rows_of
 
 BASE = "block fixed\n-2 -1\n6 -1\n6 0\n-2 0\n"
 
@@ -25,16 +26,10 @@ WINDOW = [
 Point = tuple[float, float]
 
 
-def rectangle(x: float, y: float, width: float, height: float, words: str = "") -> str:
-    """Text of an upright block."""
-    return (
-        f"block {words}\n{x!r} {y!r}\n{x + width!r} {y!r}\n" f"{x + width!r} {y + height!r}\n{x!r} {y + height!r}\n")
-
-
 def window() -> str:
     """Text of the wall with a window."""
     return BASE + "".join(
-        rectangle(left, 0.4 * course, right - left, 0.4)
+        box(left, 0.4 * course, right - left, 0.4)
         for course, blocks in enumerate(WINDOW)
         for left, right in blocks
     )
@@ -44,13 +39,8 @@ def collapse_of(
     folder: Path, blocks: str, friction: float, search: str
 ) -> tuple[dict[str, str], list[dict[str, str]], dict[int, list[list[float]]]]:
     """Row, joints and corners of the blocks (x, y, u, v) of a search."""
-    (folder / "x.blocks").write_text(blocks)
-    run_deck(
-        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
-        f"&joint friction_deg = {friction!r} /\n&search parameter = {search} /\n", "--out", folder / "out", "--quiet")
-    tables = []
-    for name in ("results", "joints", "blocks"):
-        tables.append(rows_of(folder / "out" / f"{name}.csv"))
+    out = run_scene(folder, blocks, f"&joint friction_deg = {friction!r} /\n&search parameter = {search} /\n")
+    tables = [rows_of(out / f"{name}.csv") for name in ("results", "joints", "blocks")]
     corners: dict[int, list[list[float]]] = {}
     for row in tables[2]:
         corners.setdefault(int(row["block"]), []).append([float(row[name]) for name in "xyuv"])
@@ -114,7 +104,7 @@ def check_roles(row: dict[str, str], joints: list[dict[str, str]], corners: dict
 
 def test_a_block_that_slides_away_from_a_wall_is_a_sliding_mechanism(tmp_path: Path) -> None:
     """The joint with the wall opens along its whole length: neither hinge nor slip."""
-    blocks = BASE + rectangle(-1.0, 0.0, 1.0, 2.0, "fixed") + rectangle(0.0, 0.0, 1.0, 2.0)
+    blocks = BASE + box(-1.0, 0.0, 1.0, 2.0, "fixed") + box(0.0, 0.0, 1.0, 2.0)
     row, joints, corners = collapse_of(tmp_path, blocks, 20.0, "'horizontal_coefficient'")
     assert float(row["critical"]) == pytest.approx(math.tan(math.radians(20.0)), rel=1e-8)
     assert row["collapse_mode"] == "sliding"
@@ -137,10 +127,10 @@ def test_no_joint_of_a_tilted_wall_slides_that_rounding_alone_moves(tmp_path: Pa
 @pytest.mark.parametrize(
     ("blocks", "friction", "mode"),
     [
-        (BASE + rectangle(0.0, 0.0, 1.0, 2.0), 40.0, "rotational"),
-        (BASE + rectangle(0.0, 0.0, 1.0, 2.0) + rectangle(1.0, 0.0, 1.0, 0.5), 20.0, "sliding"),
-        (BASE + rectangle(0.0, 0.0, 1.0, 3.0) + rectangle(1.0, 0.0, 1.0, 0.5), 30.0, "mixed"),
-        (BASE + rectangle(0.0, 0.0, 3.0, 0.5) + rectangle(1.0, 0.5, 1.0, 0.8), 25.0, "sliding"),
+        (BASE + box(0.0, 0.0, 1.0, 2.0), 40.0, "rotational"),
+        (BASE + box(0.0, 0.0, 1.0, 2.0) + box(1.0, 0.0, 1.0, 0.5), 20.0, "sliding"),
+        (BASE + box(0.0, 0.0, 1.0, 3.0) + box(1.0, 0.0, 1.0, 0.5), 30.0, "mixed"),
+        (BASE + box(0.0, 0.0, 3.0, 0.5) + box(1.0, 0.5, 1.0, 0.8), 25.0, "sliding"),
         (window(), 20.0, ""),
     ],
     ids=["tips", "slides two", "tips over what slides", "slides on another", "window"],

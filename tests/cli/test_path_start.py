@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import pytest
-from block_scene import block
+from assembly import area_and_centre, block_text
+from block_scene import block, run_blocks, run_scene
 from dda_command import rows_of, run_dda
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-from assembly import area_and_centre, block_text  # noqa: E402
-from random_assemblies import make_pushed  # noqa: E402
+from random_assemblies import make_pushed
 
 BETWEEN_WALLS = """block fixed
 0 0
@@ -34,11 +31,7 @@ block
 
 def rows(folder: Path, blocks: str, task: str) -> list[dict[str, str]]:
     """Rows of a deck in the order of its cases."""
-    (folder / "x.blocks").write_text(blocks)
-    (folder / "deck.nml").write_text(f"&scene kind = 'blocks', geometry = 'x.blocks' /\n{task}\n")
-    done = run_dda("run", "deck.nml", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr + done.stdout
-    return sorted(rows_of(folder / "deck" / "results.csv"), key=lambda row: int(row["case"]))
+    return sorted(rows_of(run_scene(folder, blocks, task) / "results.csv"), key=lambda row: int(row["case"]))
 
 
 @pytest.mark.parametrize(("flow", "verdict"), [("coulomb", "collapsed"), ("associated", "stable")])
@@ -90,7 +83,7 @@ def test_a_push_holds_a_wedge_between_two_factors(tmp_path: Path, low: float, hi
     if falls:
         assert (row["verdict"], row["collapses_at"]) == ("found", falls[0][0])
         assert float(row["critical"]) == pytest.approx(falls[0][1], rel=1e-9)
-        assert ("it also collapses at" in (tmp_path / "deck" / "log.txt").read_text()) == (len(falls) == 2)
+        assert ("it also collapses at" in (tmp_path / "out" / "log.txt").read_text()) == (len(falls) == 2)
     else:
         assert row["verdict"] == "collapsed"
 
@@ -128,11 +121,7 @@ def test_a_corbel_without_a_start_is_no_collapse_where_its_push_has_a_history(tm
     for number, polygon in enumerate(assembly.blocks, len(ground) + 1):
         area, (x, y) = area_and_centre(polygon)
         blocks += f"load block {number} {x!r} {y!r}\n0 0 0\n1 {0.1 * 2e4 * area!r} 0\n"
-    (tmp_path / "x.blocks").write_text(blocks)
-    rough = "&material unit_weight = 2e4 /\n&joint friction_deg = 88.7800220058748 /\n"
-    (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'x.blocks' /\n" + rough)
-    run_dda("run", "deck.nml", "--quiet", cwd=tmp_path)
-    (row,) = rows_of(tmp_path / "deck" / "results.csv")
+    row = run_blocks(tmp_path, blocks, "&material unit_weight = 2e4 /\n&joint friction_deg = 88.7800220058748 /\n")
     assert row["verdict"] in ("undecided", "stable")
 
 
@@ -221,7 +210,7 @@ def test_gravity_that_tilts_is_searched_where_nothing_stands_upright(
     search = f"&search parameter = 'gravity_direction_deg', low = {low}, high = {high} /"
     (row,) = rows(tmp_path, RAMP, f"&analysis flow = '{flow}' /\n&joint friction_deg = 30 /\n{search}")
     assert row["verdict"] == "found" and float(row["critical"]) == pytest.approx(-105.0, abs=1e-6)
-    run = run_dda("run", "deck.nml", cwd=tmp_path)
+    run = run_dda("run", "x.nml", cwd=tmp_path)
     assert ("it also collapses at -16" in run.stdout) == (low < -165)
 
 
@@ -266,5 +255,5 @@ def test_a_block_that_slides_upright_and_holds_on_a_slope_is_found(tmp_path: Pat
     turn = math.degrees(math.asin(0.6 * math.cos(math.radians(25.0))))
     assert found["verdict"] == "found"
     assert float(found["critical"]) == pytest.approx(-90.0 - (turn - 25.0), rel=1e-6)
-    other = (tmp_path / "deck" / "log.txt").read_text().rpartition("it also collapses at ")[2]
+    other = (tmp_path / "out" / "log.txt").read_text().rpartition("it also collapses at ")[2]
     assert other.split()[0] == f"{-90.0 - (turn + 25.0):.6g}"

@@ -11,7 +11,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_dda
+from block_scene import run_scene
+from dda_command import rows_of
 
 Point = tuple[float, float]
 Tensor = tuple[float, float, float]
@@ -88,17 +89,13 @@ def strain(
     _, x, y = centre_of(shape)
     lines = ["block", *(f"{px!r} {py!r}" for px, py in shape), f"fix {x!r} {y + above!r}"]
     lines += [f"load {px!r} {py!r} {fx!r} {fy!r}" for (px, py), (fx, fy) in zip(shape, corner_forces(shape, stress))]
-    (folder / "x.blocks").write_text("\n".join(lines) + "\n")
-    (folder / "x.nml").write_text(
-        "&scene kind = 'blocks', geometry = 'x.blocks' /\n"
+    out = run_scene(
+        folder, "\n".join(lines) + "\n",
         f"&material density = {DENSITY}, young = {YOUNG}, poisson = {POISSON}, plane = '{plane}' /\n"
-        f"&load gravity = {gravity!r} /\n&analysis {time_step} /\n&joint friction_deg = 0.0 /\n"
-    )
-    done = run_dda("run", "x.nml", "--out", folder / "out", "--quiet", cwd=folder)
-    assert done.returncode == 0, done.stderr + done.stdout
-    (row,) = rows_of(folder / "out" / "results.csv")
+        f"&load gravity = {gravity!r} /\n&analysis {time_step} /\n&joint friction_deg = 0.0 /\n")
+    (row,) = rows_of(out / "results.csv")
     assert row["verdict"] == "stable"
-    return strain_of(folder / "out")
+    return strain_of(out)
 
 
 GRAVITIES = [0.0, 1e-9, 9.81, 1e6]

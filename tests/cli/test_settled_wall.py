@@ -6,43 +6,27 @@ import math
 from pathlib import Path
 
 import pytest
-from block_scene import block
+from block_scene import block, run_scene, wall
 from dda_command import rows_of, run_deck
 
 COURSES, LENGTH, HEIGHT, G = 10, 0.25, 0.125, 9.81
 
 
-def wall(columns: int, courses: int = COURSES) -> str:
-    """Bricks in running bond on a fixed floor, their joints all of one group."""
-    end = columns * LENGTH
-    text = block([(0.0, -HEIGHT), (end, -HEIGHT), (end, 0.0), (0.0, 0.0)], "fixed")
-    for course in range(courses):
-        heads = [column * LENGTH for column in range(columns + 1)]
-        if course % 2:
-            heads = [0.0, *(head + LENGTH / 2.0 for head in heads[:-1]), end]
-        low, high = course * HEIGHT, (course + 1) * HEIGHT
-        for left, right in zip(heads, heads[1:]):
-            text += block([(left, low), (right, low), (right, high), (left, high)])
-    return text
-
-
 def run(folder: Path, blocks: str, friction_deg: float, duration: float,
         time_step: float = 1e-3, unknowns: int = 6) -> tuple[list[dict[str, str]], int]:
     """Rows of the measured point and passes of a run."""
-    (folder / "x.blocks").write_text(blocks)
-    run_deck(
-        folder, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
+    out = run_scene(
+        folder, blocks, f"&joint friction_deg = {friction_deg!r} /\n"
         f"&analysis mode = 'dynamic', geometry = 'current', unknowns = {unknowns}, "
-        f"time_step = {time_step!r}, duration = {duration!r}, steps = 9999 /\n", "--quiet")
-    passes = int(rows_of(folder / "x" / "results.csv")[0]["open_close_iterations"])
-    return rows_of(folder / "x" / "points.csv"), passes
+        f"time_step = {time_step!r}, duration = {duration!r}, steps = 9999 /")
+    return rows_of(out / "points.csv"), int(rows_of(out / "results.csv")[0]["open_close_iterations"])
 
 
 # fewer and more than 300 and 2000 joints; blocks that strain swing first
 @pytest.mark.parametrize(("columns", "unknowns", "steps"), [(5, 3, 40), (13, 3, 40), (100, 3, 40), (5, 6, 130)])
 def test_a_wall_that_has_settled_stands_still(tmp_path: Path, columns: int, unknowns: int, steps: int) -> None:
     """Then nothing is left to be found: no passes, and not a bit of any place changes."""
-    measured = wall(columns) + f"measure {LENGTH!r} {0.9 * COURSES * HEIGHT!r}\n"
+    measured = wall(COURSES, columns, LENGTH, HEIGHT) + f"measure {LENGTH!r} {0.9 * COURSES * HEIGHT!r}\n"
     settled, passes = run(tmp_path, measured, 35.0, 1e-3 * steps, unknowns=unknowns)
     rows, in_all = run(tmp_path, measured, 35.0, 0.2, unknowns=unknowns)
     assert in_all == passes
@@ -58,7 +42,7 @@ def test_bricks_that_land_microseconds_apart_come_to_rest(tmp_path: Path, apart:
     bricks = [(LENGTH * (2 * i + 0.25), top + fall + apart * i) for i in range(3)]
     blocks = "".join(block([(x, y), (x + LENGTH / 2, y), (x + LENGTH / 2, y + HEIGHT), (x, y + HEIGHT)])
                      for x, y in bricks) + f"measure {bricks[1][0] + 0.01!r} {bricks[1][1] + 0.01!r}\n"
-    rows, _ = run(tmp_path, wall(5, courses) + blocks, 35.0, 0.7, 2e-3)
+    rows, _ = run(tmp_path, wall(courses, 5, LENGTH, HEIGHT) + blocks, 35.0, 0.7, 2e-3)
     assert float(rows[-1]["time"]) == pytest.approx(0.7)
     assert float(rows[-1]["v"]) == pytest.approx(float(rows[-20]["v"]), abs=1e-9)
     assert float(rows[-1]["v"]) == pytest.approx(-fall, rel=1e-3)
@@ -71,7 +55,7 @@ def test_a_brick_thrown_onto_a_wall_brings_in_its_own_energy_alone(tmp_path: Pat
     low = courses * HEIGHT + 1e-3
     brick = block([(0.5, low), (0.5 + LENGTH, low), (0.5 + LENGTH, low + HEIGHT), (0.5, low + HEIGHT)],
                   "velocity 0.8 -1.0 4.0")
-    (tmp_path / "x.blocks").write_text(wall(columns, courses) + brick)
+    (tmp_path / "x.blocks").write_text(wall(courses, columns, LENGTH, HEIGHT) + brick)
     run_deck(
         tmp_path, f"&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = {friction_deg!r} /\n"
         f"&analysis mode = 'dynamic', geometry = 'current', unknowns = 3, time_step = {step!r}, duration = 0.1, "
@@ -89,7 +73,7 @@ def test_a_brick_that_flies_into_a_wall_without_gravity_adds_nothing(tmp_path: P
     courses, speed = 16, 5.0
     low = 8.3 * HEIGHT
     brick = block([(-0.3, low), (-0.05, low), (-0.05, low + HEIGHT), (-0.3, low + HEIGHT)], f"velocity {speed!r} 0 0")
-    (tmp_path / "x.blocks").write_text(wall(9, courses) + brick)
+    (tmp_path / "x.blocks").write_text(wall(courses, 9, LENGTH, HEIGHT) + brick)
     run_deck(
         tmp_path, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&load gravity = 0 /\n"
         f"&joint friction_deg = {friction_deg} /\n"
@@ -144,7 +128,7 @@ def test_what_nothing_resists_keeps_its_speed(tmp_path: Path, speed: float) -> N
 
 def test_a_wall_pushed_beyond_its_limit_falls_without_creeping(tmp_path: Path) -> None:
     """Static steps settle as the wall falls; where their search creeps, they are cut: it takes 43 of them."""
-    (tmp_path / "x.blocks").write_text(wall(8, 6))
+    (tmp_path / "x.blocks").write_text(wall(6, 8, LENGTH, HEIGHT))
     rows = {}
     for name, keys in (
         ("limit", "&search parameter = 'horizontal_coefficient' /\n&analysis flow = 'associated' /\n"),

@@ -5,16 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from block_scene import block
-from dda_command import rows_of, run_deck
+from block_scene import block, box, run_scene
+from dda_command import rows_of
 
 
-def rectangle(left: float, low: float, right: float, high: float, words: str = "") -> str:
-    """A rectangle of a file of blocks."""
-    return block([(left, low), (right, low), (right, high), (left, high)], words)
-
-
-BASE = rectangle(-2, -1, 8, 0, "fixed")
+BASE = box(-2, -1, 10, 1, "fixed")
 
 
 def wall(courses: int = 4, skip: tuple[int, ...] = ()) -> str:
@@ -25,18 +20,16 @@ def wall(courses: int = 4, skip: tuple[int, ...] = ()) -> str:
         for left, right in zip(joints, list(joints)[1:]):
             number += 1
             if number not in skip:
-                text += rectangle(left, course / 2, right, course / 2 + 0.5)
+                text += box(left, course / 2, right - left, 0.5)
     return text
 
 
 def run(folder: Path, blocks: str, keys: str = "") -> tuple[dict[str, str], dict[tuple[float, ...], dict[str, str]]]:
     """The row of results.csv, and the joints by their ends."""
-    (folder / "scene.blocks").write_text(blocks)
-    run_deck(
-        folder, "&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + keys, "--out", "out", "--quiet", name="deck")
-    (row,) = rows_of(folder / "out" / "results.csv")
+    out = run_scene(folder, blocks, keys)
+    (row,) = rows_of(out / "results.csv")
     ends = ("x_intrados", "y_intrados", "x_extrados", "y_extrados")
-    joints = rows_of(folder / "out" / "joints.csv")
+    joints = rows_of(out / "joints.csv")
     return row, {tuple(round(float(joint[name]), 9) for name in ends): joint for joint in joints}
 
 

@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 
 import pytest
-from block_scene import block
-from dda_command import rows_of, run_deck
+from block_scene import block, run_scene
+from dda_command import rows_of
 
 DENSITY, G = 2240.0, 9.81
 HALF_SPAN, COUNT = 10.0, 36
@@ -15,13 +15,11 @@ HALF_SPAN, COUNT = 10.0, 36
 
 def run(folder: Path, blocks: str, keys: str, young: float) -> Path:
     """Folder of the results of a run without restitution."""
-    (folder / "x.blocks").write_text(blocks)
-    run_deck(
-        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&joint friction_deg = 50 /\n"
+    return run_scene(
+        folder, blocks, "&joint friction_deg = 50 /\n"
         f"&material young = {young!r}, poisson = 0 /\n"
         "&analysis mode = 'dynamic', geometry = 'current', unknowns = 6, restitution = 0, steps = 99999, "
-        f"{keys} /\n&output energy = .true. /\n", "--quiet")
-    return folder / "x"
+        f"{keys} /\n&output energy = .true. /")
 
 
 @pytest.mark.parametrize("step", [2e-3, 1e-3, 5e-4])

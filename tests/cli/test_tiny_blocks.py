@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from dda_command import rows_of, run_deck
+from block_scene import block, run_blocks
 
 Case = tuple[float, float, int, str]
 
@@ -24,13 +24,8 @@ def run(folder: Path, below: str, ground: float, size: float, case: Case) -> tup
     """Verdict and remark of a block twice as high as wide."""
     lean, push, friction, _ = case
     corners = [(0.0, ground), (size, ground), (size * (1 + lean), ground + 2 * size), (size * lean, ground + 2 * size)]
-    text = below + "block\n" + "".join(f"{x!r} {y!r}\n" for x, y in corners)
-    (folder / "x.blocks").write_text(text)
-    run_deck(
-        folder, "&scene kind = 'blocks', geometry = 'x.blocks' /\n&analysis geometry = 'current' /\n"
-        f"&joint friction_deg = {friction} /\n&load horizontal_coefficient = {push!r} /\n",
-        "--out", "out", "--quiet", accepted=(0, 3))
-    (row,) = rows_of(folder / "out" / "results.csv")
+    row = run_blocks(folder, below + block(corners), "&analysis geometry = 'current' /\n"
+                     f"&joint friction_deg = {friction} /\n&load horizontal_coefficient = {push!r} /\n")
     return row["verdict"], (folder / "out" / "log.txt").read_text()
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from block_scene import wall
 from dda_command import run_dda
 
 pytest.importorskip("matplotlib", reason="figures want matplotlib")
@@ -38,21 +39,11 @@ def compute(folder: Path, text: str) -> results.Results:
     return voussoir.run(text, out=folder)
 
 
-def wall(courses: int, bricks: int) -> str:
-    """A wall in running bond as a file of blocks."""
-    boxes = [("block fixed", -1.0, -0.5, bricks + 1.0, 0.0)]
-    for course in range(courses):
-        inner = [number + 0.5 * (course % 2) for number in range(1 - course % 2, bricks)]
-        ends = [0.0, *(x for x in inner if 0.0 < x < bricks), float(bricks)]
-        boxes += [("block", a, 0.5 * course, b, 0.5 * course + 0.5) for a, b in zip(ends, ends[1:])]
-    return "".join(f"{head}\n{a} {b}\n{c} {b}\n{c} {d}\n{a} {d}\n" for head, a, b, c, d in boxes)
-
-
 @pytest.fixture(scope="module")
 def pushed(tmp_path_factory: pytest.TempPathFactory) -> results.Results:
     """A wall of 105 bricks that is pushed over."""
     folder = tmp_path_factory.mktemp("pushed")
-    (folder / "wall.blocks").write_text(wall(10, 10))
+    (folder / "wall.blocks").write_text(wall(10, 10, 1.0, 0.5, 1.0))
     return compute(folder, "&scene kind = 'blocks', geometry = 'wall.blocks' /\n&joint friction_deg = 33 /\n"
                            "&search parameter = 'horizontal_coefficient', low = 0, high = 1 /\n")
 
@@ -110,7 +101,7 @@ def test_all_stands_on_the_sheet_and_the_legend_is_lower_than_the_drawing(arch, 
 
 @pytest.mark.parametrize(("height", "width"), [(12, 80), (12, 40), (2, 40), (2, 80)])
 def test_tall_drawings_have_their_legend_beside_where_there_is_room(tmp_path: Path, height: int, width: int) -> None:
-    column = wall(0, 3) + "".join(f"block\n1 {n}\n2 {n}\n2 {n + 1}\n1 {n + 1}\n" for n in range(height))
+    column = wall(0, 3, 1.0, 0.5, 1.0) + "".join(f"block\n1 {n}\n2 {n}\n2 {n + 1}\n1 {n + 1}\n" for n in range(height))
     (tmp_path / "column.blocks").write_text(column)
     run = compute(tmp_path, "&scene kind = 'blocks', geometry = 'column.blocks' /\n"
                             "&search parameter = 'horizontal_coefficient' /\n")
@@ -262,7 +253,8 @@ def test_supports_and_held_blocks_are_hatched() -> None:
 
 def test_files_of_blocks_are_drawn_without_a_run(tmp_path: Path, capsys) -> None:
     file = tmp_path / "wall.blocks"
-    file.write_text(wall(3, 4) + "live 2 1.5 0 -1000\nfix 0.5 0.25 x\nbar 0.5 0.25 3.5 0.25 stiffness 1e6\n")
+    file.write_text(wall(3, 4, 1.0, 0.5, 1.0)
+                    + "live 2 1.5 0 -1000\nfix 0.5 0.25 x\nbar 0.5 0.25 3.5 0.25 stiffness 1e6\n")
     with house_style():
         figure = draw_file(file, numbers=True)
     drawn = [path.vertices[:4] for part in figure.axes[0].collections for path in part.get_paths()]

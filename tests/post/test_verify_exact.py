@@ -9,9 +9,9 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from block_scene import wall
 from dda_command import rows_of
 from live_assemblies import random_wall
-from test_loading_path import wall
 from test_verify import HEAD, run_scene
 
 from voussoir.command.main import main
@@ -116,7 +116,7 @@ def test_limits_of_brick_walls_are_proven(
     tmp_path: Path, units: int, courses: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
     deck = HEAD + "&joint friction_deg = 33.0 /\n" + TIGHT.format("horizontal_coefficient")
-    ((low, high),) = intervals(run_scene(tmp_path, deck, wall(units, courses)), capsys)
+    ((low, high),) = intervals(run_scene(tmp_path, deck, wall(courses, units, 2.0, 1.0, 1.0)), capsys)
     assert 0.5 < low < high < 0.65 and high - low < 1e-12
 
 
