@@ -1,7 +1,7 @@
 !> Steps of the loading path, from event to event
 submodule (dda_loading_path) dda_path_steps
    use dda_coulomb_equations, only : bend_joints
-   use dda_event_rates, only : find_rates, rates_t, undamp_rates
+   use dda_event_rates, only : find_rates, rates_t, undamp_rates, weak_force
    use dda_load_jump, only : nudge, nudge_to_balance, share_anew
    use dda_path_event, only : event_kind, event_t, go_back, move_on, next_event
    implicit none
@@ -72,6 +72,8 @@ contains
             end if
          end if
          if (.not. goes_on) then
+            ! a load that is left and counts as none sets nothing in motion
+            if (h_end - result%reached <= weak_force) return
             slow = result%reached - last_jump < slow_factor*width
             width = merge(min(4.0_wp*width, largest_nudge), nudge, slow)
             last_jump = result%reached
