@@ -204,7 +204,8 @@ contains
    !> meets no event. It is that of joints, in proportion to their stiffness: parts of the assembly
    !> that move as one are free while no joint snaps. Events that are minor beside the unbalanced
    !> load do not count: far from the moving blocks, joints at their limits change their faces by
-   !> rounding alone, without end
+   !> rounding alone, without end. So do all joints where the unbalanced load is a force that counts
+   !> as none: a motion that has kept to such for many steps is balanced
    pure subroutine jump_to_balance(joints, equations, start, state, jump, end)
       type(coulomb_joints_t), intent(inout) :: joints
       type(coulomb_equations_t), intent(inout) :: equations
@@ -215,12 +216,12 @@ contains
       integer, intent(out) :: end
       type(rates_t) :: rates
       type(event_t) :: event
-      real(wp) :: far, firm, viscosity, way
-      real(wp) :: rest(3, size(state%load, 2))
-      integer :: i, most, standstill
+      real(wp) :: far, firm, rest(3, size(state%load, 2)), viscosity, way
+      integer :: faint, i, most, standstill
       logical :: calm, found, pushed, whole
 
       standstill = 0
+      faint = 0
       pushed = .false.
       viscosity = 0.0_wp
       firm = first_firm
@@ -233,10 +234,11 @@ contains
       do while (i < most)
          i = i + 1
          call renew_patience(maxval(abs(state%motion - start)), most, way, i)
-         call imbalance(joints, state%load, state%force, rest)
+         call find_rest(joints, state, rest, faint)
          call bend_joints(equations, joints, state)
          if (i > most/brief) far = driven*jump%far
-         call see_end(joints, equations, rest, start, state, far, whole, rates, jump, end)
+         call see_end(joints, equations, rest, start, state, far, whole .and. .not. pushed &
+            & .or. faint > max_standstill, rates, jump, end)
          if (end /= motion_end%unsettled) return
          if (equations%base%n_factorisation >= equations%most_factorisations) return
          call leave_minor(rest)
@@ -259,12 +261,22 @@ contains
          calm = event%kind == event_kind%none .and. rates%unbalanced < 1.0_wp/(1.0_wp - calmer)
          whole = event%kind == event_kind%none .and. .not. viscosity > 0.0_wp
          pushed = whole .and. rates%unbalanced > moves_unbalanced
-         whole = whole .and. .not. pushed
          standstill = merge(standstill + 1, 0, event%distance < no_way)
          if (standstill > max_standstill) return
          call move_on(joints, rates, event, state)
       end do
    end subroutine jump_to_balance
+
+   !> Unbalanced load, and how often it has been a force that counts as none
+   pure subroutine find_rest(joints, state, rest, faint)
+      type(coulomb_joints_t), intent(in) :: joints
+      type(coulomb_state_t), intent(in) :: state
+      real(wp), intent(out) :: rest(:, :)  !! The load: (3, n_block)
+      integer, intent(inout) :: faint      !! The number of times
+
+      call imbalance(joints, state%load, state%force, rest)
+      if (maxval(abs(rest)) <= weak_force) faint = faint + 1
+   end subroutine find_rest
 
    !> Give a motion that has grown by half the steps again that may bring it to its end
    pure subroutine renew_patience(moved, most, way, step)
@@ -334,7 +346,8 @@ contains
       real(wp), intent(in) :: start(:, :)  !! Motion where it began: (3, n_block)
       type(coulomb_state_t), intent(in) :: state
       real(wp), intent(in) :: far          !! A motion beyond this is far
-      !> True if the last step should bring balance: then only negligible forces may be left
+      !> True if the last step should bring balance, or many have come near to it: then only
+      !> negligible forces may be left
       logical, intent(in) :: whole
       !> Rates, other ones where the motion is far
       type(rates_t), intent(inout) :: rates

@@ -304,7 +304,7 @@ def test_other_steps_find_values_within_the_bracket_of_a_jump(tmp_path: Path) ->
     assert float(row["critical_low"]) < 2.8134 < 2.8509 < float(row["critical_high"]) < float(row["exact_low"])
 
 
-@pytest.mark.parametrize("seed", [985039, 985085, 985101, 986512, 986619])
+@pytest.mark.parametrize("seed", [985039, 985085, 985101, 986512, 986619, 14600265])
 def test_bridges_lie_between_their_bounds_and_are_like_their_mirror_images(tmp_path: Path, seed: int) -> None:
     """One ring to four that slide and crush; `python3 crushing_bridges.py` checks any number of them."""
     verdict, faults = check_bridge(DDA, tmp_path, seed)
