@@ -171,7 +171,7 @@ contains
       if (model%constants%dynamic) damper = model%constants%contact_damping/march%time_step
       equations%matrix%diagonal = equations%base
       equations%matrix%coupling = 0.0_wp
-      call couple_bars(equations%bolts, equations%matrix%pair, .true., equations%matrix%coupling)
+      call couple_bars(equations%bolts, equations%matrix%pair, equations%matrix%coupling)
       equations%motion = equations%load
       do c = 1, contacts%n
          associate (contact => contacts%item(c))

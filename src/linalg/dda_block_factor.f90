@@ -106,11 +106,12 @@ contains
       type(block_matrix_t), intent(in) :: matrix
       type(block_factor_t), intent(in) :: factor
       real(wp) :: condition  !! Estimate of the condition number, at least 1
-      real(wp) :: root(matrix%n_dof, size(matrix%diagonal, 3))
+      real(wp), allocatable :: root(:, :)
       integer :: c
 
       condition = huge(condition)
       if (.not. factor%usable) return
+      allocate (root(matrix%n_dof, size(matrix%diagonal, 3)))
       do c = 1, matrix%n_dof
          root(c, :) = sqrt(matrix%diagonal(c, c, :))
       end do

@@ -2,7 +2,7 @@
 !>
 !> Equation (M3) of docs/method.md
 module dda_assembly
-   use dda_bar_springs, only : new_bar_springs
+   use dda_bar_springs, only : couple_bars, new_bar_springs
    use dda_block_factor, only : factorise, plan_factor, substitute
    use dda_block_matrix, only : set_pattern
    use dda_block_system, only : block_system_t
@@ -23,10 +23,10 @@ module dda_assembly
 
 contains
 
-   !> Equations of a system at rest: pattern, mass, stiffness and weight
-   pure subroutine new_equations(system, springs, settings, equations)
+   !> Equations of a system at rest: mass, stiffness and weight. Pattern and factor follow with the
+   !> first solution for given faces; dynamic runs with current geometry need none
+   pure subroutine new_equations(system, settings, equations)
       type(block_system_t), intent(in) :: system
-      type(joint_springs_t), intent(in) :: springs
       type(settings_t), intent(in) :: settings
       type(equations_t), intent(out) :: equations
       type(held_point_t) :: none(0)
@@ -37,11 +37,12 @@ contains
       n = maxval(system%equation)
       allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n))
       allocate (equations%base(nd, nd, n), source=0.0_wp)
-      allocate (equations%glued(nd, nd, n), equations%weight(nd, n), equations%outer(nd, n))
-      allocate (equations%load(nd, n), equations%felt(nd, n), equations%changed(n))
+      allocate (equations%weight(nd, n), equations%outer(nd, n), equations%load(nd, n))
+      allocate (equations%felt(nd, n))
+      allocate (equations%changed(n), source=.true.)
+      equations%new_pattern = .true.
       equations%bars = new_bar_springs(settings%boundary, system%equation, nd)
       equations%dashpot = dashpot_matrices(system, settings%boundary, nd)
-      call new_springs(springs, nd, n, equations)
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
@@ -130,7 +131,8 @@ contains
          end associate
       end do
       call set_pattern(equations%matrix, n_dof, n_equation, pair(:, :e))
-      if (.not. allocated(equations%first_joint)) allocate (equations%first_joint(n_equation + 1))
+      if (.not. allocated(equations%first_joint)) allocate (equations%first_joint(n_equation + 1), &
+         & equations%glued(n_dof, n_dof, n_equation))
       call list_by_owner(reshape(springs%equation, [size(springs%equation)]), &
          & equations%first_joint, side)
       equations%joint = merge((side + 1)/2, -side/2, mod(side, 2) == 1)
@@ -205,6 +207,7 @@ contains
       do e = 1, size(equations%changed)
          if (equations%changed(e)) call add_springs(springs, cone, e, equations)
       end do
+      call couple_bars(equations%bars, equations%matrix%pair, equations%matrix%coupling)
       call factorise(equations%matrix, equations%factor, equations%changed)
       equations%factorisations = equations%factorisations + 1
       equations%changed = .not. equations%factor%usable

@@ -1,6 +1,6 @@
 !> Equations of the blocks without contacts: inertia, elasticity, loads (Shi: df11 to df16)
 module dda_block_inertia
-   use dda_bar_springs, only : add_bars, couple_bars, follow_bars
+   use dda_bar_springs, only : add_bars, follow_bars
    use dda_block_system, only : block_system_t
    use dda_deformation, only : turned_tensor
    use dda_step_state, only : equations_t
@@ -54,7 +54,6 @@ contains
          & equations%load)
       call follow_bars(system, settings, equations%bars)
       call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
-      call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
       ! in reference geometry steps of one length have one matrix
       do e = 1, size(before, 3)
          equations%changed(e) = equations%changed(e) .or. size(equations%bars%entry) > 0 &

@@ -169,7 +169,7 @@ contains
       type(march_t), intent(in), optional :: onward
 
       call raise_springs(run%settings, run%system, run%contacts)
-      call new_equations(run%system, run%contacts%springs, run%settings, run%equations)
+      call new_equations(run%system, run%settings, run%equations)
       allocate (run%neighbours(2, size(run%contacts%joint)))
       run%neighbours(1, :) = run%contacts%joint%block(1)
       run%neighbours(2, :) = run%contacts%joint%block(2)

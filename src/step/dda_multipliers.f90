@@ -6,7 +6,7 @@
 !> The mean force of an elastic bar over a step is A0 + share*k*e. Bounded above and below it is
 !> like a shear force that has no friction, else like a normal force.
 module dda_multipliers
-   use dda_bar_springs, only : add_bars, bar_springs_t, couple_bars, judge_bars
+   use dda_bar_springs, only : add_bars, bar_springs_t, judge_bars
    use dda_contact_solver, only : settle_contacts
    use dda_contact_types, only : joint_springs_t, unbounded
    use dda_fixed_points, only : correct_fixed_forces
@@ -61,7 +61,6 @@ contains
          call judge_bars(equations%bars, state%motion, pass > few_bar_passes, agreed)
          call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
          if (agreed) return
-         call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
          equations%changed = .true.
       end do
       state%settled = .false.
@@ -172,7 +171,6 @@ contains
       equations%load = load
       call judge_bars(equations%bars, state%motion, .false., agreed)
       call add_bars(equations%bars, 1.0_wp, equations%base, equations%load)
-      call couple_bars(equations%bars, equations%matrix%pair, .true., equations%matrix%coupling)
    end subroutine sweep_with_bars
 
    !> The joints of a step and behind them its bars

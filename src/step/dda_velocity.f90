@@ -13,7 +13,6 @@
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
 module dda_velocity
    use dda_balance, only : keep_moment
-   use dda_bar_springs, only : couple_bars
    use dda_block_inertia, only : damping_rate, drop_strain_rates, hold_energy, kinetic_energy, &
       & packed_velocity, strain_follows
    use dda_contact_solver, only : max_energy_gain
@@ -314,7 +313,6 @@ contains
                & equations%fixed, equations%load(:, e))
          end do
          call drop_strain_rates(run%system%equation, impact%follows, equations)
-         call couple_bars(equations%bars, equations%matrix%pair, .false., equations%matrix%coupling)
          call add_fixed_springs(equations%fixed, dt*equations%fixed%rate, equations%base, &
             & equations%load)
          equations%new_numbers = .true.

@@ -147,11 +147,10 @@ contains
    end subroutine add_bars
 
    !> Coupling stiffness between the blocks of the bars
-   pure subroutine couple_bars(bars, pair, are_stiff, coupling)
+   pure subroutine couple_bars(bars, pair, coupling)
       type(bar_springs_t), intent(in) :: bars
       !> Blocks of each entry of the matrix, in the order of its rows and columns: (2, n_entry)
       integer, intent(in) :: pair(:, :)
-      logical, intent(in) :: are_stiff              !! False to set the couplings to zero
       real(wp), intent(inout) :: coupling(:, :, :)  !! Couplings: (n_dof, n_dof, n_entry)
       real(wp) :: stiffness(2)
       integer :: c, e, first, i, k
@@ -160,7 +159,6 @@ contains
          e = bars%entry(i)
          if (e == 0) cycle
          coupling(:, :, e) = 0.0_wp
-         if (.not. are_stiff) cycle
          first = merge(1, 2, pair(1, e) == bars%equation(1, i))
          stiffness = acting(bars, i)
          do k = 1, 2

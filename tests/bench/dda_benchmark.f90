@@ -4,7 +4,7 @@ module dda_benchmark
    use couplet_heyman_discrete, only : discrete_critical_equal, discrete_solution_t
    use dda_arch, only : arch_blocks, equal_joints
    use dda_arch_chain, only : arch_chain, arch_numbers_t, arch_rays
-   use dda_assembly, only : new_equations, solve_faces
+   use dda_assembly, only : new_equations, refresh, solve_faces
    use dda_block_inertia, only : assemble_blocks
    use dda_band_reference, only : band_job_t, new_band_job
    use dda_block_factor, only : factorise, substitute
@@ -302,7 +302,8 @@ contains
       job%system = job%scene%system
       job%contacts = job%scene%contacts
       call raise_springs(job%scene%settings, job%system, job%contacts)
-      call new_equations(job%system, job%contacts%springs, job%scene%settings, job%equations)
+      call new_equations(job%system, job%scene%settings, job%equations)
+      call refresh(job%contacts%springs, job%equations)
    end subroutine run_setup
 
    !> Assemble the blocks, so that the matrix is made anew

@@ -120,7 +120,7 @@ contains
             & onward=job%march)
          if (.not. allocated(job%march%reach)) &
             & job%march%reach = first_reach(scene%system, scene%settings, job%march)
-         call new_equations(scene%system, scene%contacts%springs, scene%settings, job%equations)
+         call new_equations(scene%system, scene%settings, job%equations)
          call assemble_blocks(scene%system, scene%settings, job%march%dt, job%equations)
          allocate (job%motion, source=job%equations%weight)
          call solve_faces(job%equations, scene%contacts%springs, scene%contacts%springs%cone, &

@@ -25,7 +25,7 @@ contains
       type(step_state_t), intent(out) :: state     !! The state, all joints as they are
       integer :: n
 
-      call new_equations(scene%system, scene%contacts%springs, scene%settings, equations)
+      call new_equations(scene%system, scene%settings, equations)
       call assemble_blocks(scene%system, scene%settings, dt, equations)
       n = size(scene%contacts%joint)
       allocate (state%motion(size(equations%weight, 1), size(equations%weight, 2)))
