@@ -1,7 +1,7 @@
 !> Blocks, contacts and state of a restart file
 submodule (dda_restart) dda_restart_blocks
    use dda_block_system, only : begin_motion
-   use dda_block_update, only : displace_blocks
+   use dda_block_update, only : displaced
    use dda_contact_search, only : law_between
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint
    use dda_contacts, only : begin_memory, set_joints
@@ -61,7 +61,7 @@ contains
       system%acceleration = state%acceleration
       system%stress = state%stress
       if (.not. settings%current) return
-      call displace_blocks(settings, no_motion, system)
+      system%block_pose_t = displaced(settings, system, no_motion)
       if (.not. are_blocks(system)) fault = "strains that leave no block"
    end procedure take_blocks
 

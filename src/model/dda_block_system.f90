@@ -7,15 +7,24 @@ module dda_block_system
    implicit none
    private
 
-   public :: block_system_t, n_unknown, new_block_system
+   public :: block_pose_t, block_system_t, n_unknown, new_block_system
    public :: begin_motion, forget_rest, move_system
 
    !> Unknowns of a deformable block: u0, v0, r0, ex, ey, gxy
    integer, parameter :: n_unknown = 6
 
+   !> Where blocks are, and their stress
+   type :: block_pose_t
+      real(wp), allocatable :: moved(:, :)  !! Present corners: (2, n_vertex) [m]
+      !> Total motion; in current geometry, strains refer to the frame that rotates with the
+      !> block: (n_unknown, n_block) [m, m, rad, -, -, -]
+      real(wp), allocatable :: motion(:, :)
+      real(wp), allocatable :: stress(:, :)  !! Stress sx, sy, txy: (3, n_block) [Pa]
+   end type block_pose_t
+
    !> Blocks as arrays; block b owns the vertices first_vertex(b) to first_vertex(b + 1) - 1. The
-   !> arrays from `moved` on are allocated only if blocks may have moved
-   type :: block_system_t
+   !> pose, and the arrays from `velocity` on, are allocated only if blocks may have moved
+   type, extends(block_pose_t) :: block_system_t
       !> First vertex of each block, and one past the last: (n_block + 1)
       integer, allocatable :: first_vertex(:)
       !> Corners in the reference shape, counter-clockwise: (2, n_vertex) [m]
@@ -35,10 +44,6 @@ module dda_block_system
       !> Blocks that are not yet built or have been removed; unallocated if there are
       !> none: (n_block)
       logical, allocatable :: absent(:)
-      real(wp), allocatable :: moved(:, :)  !! Present corners: (2, n_vertex) [m]
-      !> Total motion; in current geometry, strains refer to the frame that rotates with the
-      !> block: (n_unknown, n_block) [m, m, rad, -, -, -]
-      real(wp), allocatable :: motion(:, :)
       !> Rates of the unknowns: (n_unknown, n_block) [1/s of the above]
       real(wp), allocatable :: velocity(:, :)
       !> Mean strain rate over the last dynamic step: (3, n_block) [1/s]
@@ -46,7 +51,6 @@ module dda_block_system
       !> Mean acceleration in the last dynamic step, 0 if it ended at an impact or a reversal:
       !> (3, n_block) [m/s2, m/s2, rad/s2]
       real(wp), allocatable :: acceleration(:, :)
-      real(wp), allocatable :: stress(:, :)  !! Stress sx, sy, txy: (3, n_block) [Pa]
       !> Stress at zero strain, in the frame that rotates with the block: (3, n_block) [Pa]
       real(wp), allocatable :: initial_stress(:, :)
       !> States of the bars; unallocated without bars: (n_bar)

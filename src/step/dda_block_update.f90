@@ -1,7 +1,7 @@
 !> Carry an accepted step over to blocks and contacts (Shi: df25)
 module dda_block_update
    use dda_bar_springs, only : keep_bars
-   use dda_block_system, only : block_system_t
+   use dda_block_system, only : block_pose_t, block_system_t
    use dda_contact_types, only : mohr_coulomb
    use dda_contacts, only : contacts_t
    use dda_deformation, only : moved_point, turned_tensor
@@ -12,7 +12,7 @@ module dda_block_update
    implicit none
    private
 
-   public :: carry_over, displace_blocks, update_blocks, update_contacts, worn
+   public :: carry_over, displaced, update_blocks, update_contacts, worn
 
    !> Force of velocities that is a residual, over that of the motion
    real(wp), parameter :: residual_force = 1.0e-6_wp
@@ -41,11 +41,9 @@ contains
       integer :: b, e
 
       if (settings%current .and. settings%dynamic) then
-         system%motion = step%after%motion
-         system%moved = step%after%moved
-         system%stress = step%after%stress
+         system%block_pose_t = step%after
       else if (settings%current) then
-         call displace_blocks(settings, step%state%motion, system)
+         system%block_pose_t = displaced(settings, system, step%state%motion)
          return
       end if
       do b = 1, size(system%equation)
@@ -68,38 +66,40 @@ contains
       end do
    end subroutine update_blocks
 
-   !> Let a motion carry the blocks, where blocks move; velocities stay
-   pure subroutine displace_blocks(settings, motion, system)
+   !> Where blocks are after a motion, where blocks move
+   pure type(block_pose_t) function displaced(settings, system, motion) result(after)
       type(settings_t), intent(in) :: settings
+      type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: motion(:, :)  !! The motion: (n_dof, n_equation)
-      type(block_system_t), intent(inout) :: system
       real(wp) :: of_block(6)
       integer :: b, e
 
+      after = system%block_pose_t
       do b = 1, size(system%equation)
          e = system%equation(b)
          if (e == 0) cycle
          of_block = 0.0_wp
          of_block(:settings%n_dof) = motion(:, e)
-         call move_block(b, of_block, system)
+         call move_block(system, b, of_block, after)
       end do
-   end subroutine displace_blocks
+   end function displaced
 
    !> Move one block by a finite motion
-   pure subroutine move_block(block, motion, system)
+   pure subroutine move_block(system, block, motion, after)
+      type(block_system_t), intent(in) :: system
       integer, intent(in) :: block       !! Number of the block
       real(wp), intent(in) :: motion(6)  !! Its motion in the step; strain in fixed directions: (6)
-      type(block_system_t), intent(inout) :: system
+      type(block_pose_t), intent(inout) :: after  !! Where it was in, where it is after it out
       integer :: v
 
-      associate (total => system%motion(:, block))
+      associate (total => after%motion(:, block))
          total(4:6) = total(4:6) + turned_tensor(motion(4:6), total(3), 2.0_wp)
          total(1:3) = total(1:3) + motion(1:3)
-         system%stress(:, block) = turned_tensor(system%initial_stress(:, block) &
+         after%stress(:, block) = turned_tensor(system%initial_stress(:, block) &
             & + matmul(elasticity_matrix(system%materials(system%material(block))), total(4:6)), &
             & -total(3), 1.0_wp)
          do v = system%first_vertex(block), system%first_vertex(block + 1) - 1
-            system%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
+            after%moved(:, v) = moved_point(system%vertex(:, v), system%centroid(:, block), total)
          end do
       end associate
    end subroutine move_block

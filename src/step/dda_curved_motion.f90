@@ -6,7 +6,7 @@
 !> Tarnow 1992, ZAMP 43, 757-792).
 module dda_curved_motion
    use dda_block_inertia, only : packed_velocity
-   use dda_block_update, only : displace_blocks
+   use dda_block_update, only : displaced
    use dda_contact_types, only : joint_place_t, place_joint, place_rows
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_in_time
@@ -43,7 +43,7 @@ contains
    end subroutine foresee_curves
 
    !> Settle the contacts again with rows of the motion that was found, until closed contacts have
-   !> no gap at the end of the step; blocks and joints there are set
+   !> no gap at the end of the step; blocks there are set
    pure subroutine follow_curves(run)
       type(run_t), intent(inout) :: run
       real(wp) :: size_of, error
@@ -63,26 +63,24 @@ contains
       end associate
    end subroutine follow_curves
 
-   !> Blocks and joints after a motion, and the error of the gaps that its rows give there
+   !> Blocks after a motion, and the error of the gaps that its rows give there
    pure subroutine see_curves(run, motion, error)
-      !> The run; gaps, blocks and joints at the end of its step are set
+      !> The run; gaps and blocks at the end of its step are set
       type(run_t), intent(inout) :: run
       !> The motion: (n_dof, n_equation)
       real(wp), intent(in) :: motion(:, :)
       !> The largest at closed contacts, and depth that rows of open ones do not give [m]
       real(wp), intent(out) :: error
+      type(joint_place_t) :: place
       real(wp) :: told
       integer :: j, k
 
       associate (step => run%step)
-         step%after = run%system
-         call displace_blocks(run%settings, motion, step%after)
-         step%place = run%contacts%place
+         step%after = displaced(run%settings, run%system, motion)
          step%end_gap = 0.0_wp*run%contacts%gap
          error = 0.0_wp
-         do j = 1, size(step%place)
-            call place_joint(step%after%moved, run%contacts%joint(j), &
-               & step%place(j), step%end_gap(:, j))
+         do j = 1, size(run%contacts%joint)
+            call place_joint(step%after%moved, run%contacts%joint(j), place, step%end_gap(:, j))
             do k = 1, run%contacts%joint(j)%n_contact
                told = run%contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
                associate (gap => step%end_gap(k, j))
@@ -97,16 +95,18 @@ contains
    !> Rows half way of a motion, and gaps to begin with; what strain lets them lack of the gaps at
    !> the end are curves
    pure subroutine take_turned_rows(run, motion)
-      !> The run, with joints and gaps after the motion; curves and gaps of the step are set
+      !> The run, with blocks and gaps after the motion; curves and gaps of the step are set
       type(run_t), intent(inout) :: run
       real(wp), intent(in) :: motion(:, :)
       type(joint_place_t) :: place(size(run%contacts%place))
-      real(wp) :: told(3, size(place))
+      type(joint_place_t) :: after
+      real(wp) :: told(3, size(place)), end_gap(3)
       integer :: e, j, side
 
       associate (step => run%step, springs => run%contacts%springs, gap => run%contacts%gap)
          do j = 1, size(place)
-            place(j) = half_way(run%contacts%place(j), step%place(j))
+            call place_joint(step%after%moved, run%contacts%joint(j), after, end_gap)
+            place(j) = half_way(run%contacts%place(j), after)
          end do
          call place_rows(run%system, (run%system%motion + step%after%motion)/2.0_wp, &
             & run%contacts%joint, place, springs%row)

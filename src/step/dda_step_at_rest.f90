@@ -2,7 +2,7 @@
 module dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
-   use dda_block_update, only : carry_over, displace_blocks
+   use dda_block_update, only : carry_over, displaced
    use dda_energy, only : audit_step
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
@@ -160,8 +160,7 @@ contains
             run%march%passes = run%march%passes + step%state%passes
             still = .false.
             if (.not. step%state%settled) return
-            step%after = run%system
-            call displace_blocks(run%settings, step%state%motion, step%after)
+            step%after = displaced(run%settings, run%system, step%state%motion)
             step%velocity = 0.0_wp
             step%mean_force = step%state%force
             step%curve = 0.0_wp

@@ -1,7 +1,6 @@
 !> State of a run: blocks, contacts, equations, history, and results of one step
 module dda_step_context
-   use dda_block_system, only : block_system_t
-   use dda_contact_types, only : joint_place_t
+   use dda_block_system, only : block_pose_t, block_system_t
    use dda_contacts, only : contacts_t
    use dda_kinds, only : wp
    use dda_load_clock, only : load_clock_t
@@ -70,9 +69,7 @@ module dda_step_context
       real(wp), allocatable :: speed(:, :)
       !> Depth of the last try beyond an impact [m]
       real(wp) :: overshoot = huge(1.0_wp)
-      !> The blocks at its end except for their velocities, likewise
-      type(block_system_t) :: after
-      type(joint_place_t), allocatable :: place(:)  !! Where the joints are there: (n_joint)
+      type(block_pose_t) :: after  !! Where the blocks are at its end, likewise
       !> Velocities at its end in a dynamic run: (n_dof, n_equation)
       real(wp), allocatable :: velocity(:, :)
       !> Mean forces of the joints, impacts among them, that change the velocities in a dynamic

@@ -186,11 +186,10 @@ contains
       allocate (impact%closed, source=closed_contacts(run))
       impact%springs = run%contacts%springs
       joint = run%contacts%joint
-      place = run%step%place
       do j = 1, size(joint)
-         if (joint(j)%n_contact < 2 .or. count(impact%closed(:, j)) /= 1) cycle
          ! friction acts where the blocks touch
-         joint(j)%contact%share = merge(1.0_wp, 0.0_wp, impact%closed(:, j))
+         if (joint(j)%n_contact == 2 .and. count(impact%closed(:, j)) == 1) &
+            & joint(j)%contact%share = merge(1.0_wp, 0.0_wp, impact%closed(:, j))
          call place_joint(run%step%after%moved, joint(j), place(j), gap)
       end do
       call place_rows(run%system, run%step%after%motion, joint, place, impact%springs%row)
