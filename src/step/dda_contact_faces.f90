@@ -35,10 +35,9 @@ contains
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(joint_face_t) :: face(size(p%joint))
+      type(joint_face_t), dimension(size(p%joint)) :: face, held
       real(wp), dimension(3, size(p%joint)) :: centre, now
-      real(wp), dimension(3, 3, size(p%joint)) :: held, stiff
-      real(wp) :: motion(size(p%load, 1), size(p%load, 2)), left
+      real(wp) :: stiff(3, 3, size(p%joint)), motion(size(p%load, 1), size(p%load, 2)), left
       integer :: changes, i, last, pass, turn
       logical :: stale, changed(0:size(p%load, 2))
 
@@ -61,10 +60,10 @@ contains
             call set_springs(p, face, stiff)
             changed = pass == 1
             do i = 1, merge(0, size(face), pass == 1)
-               if (any(abs(stiff(:, :, i) - held(:, :, i)) > 0.0_wp)) &
+               if (face(i)%slip /= held(i)%slip .or. any(face(i)%open .neqv. held(i)%open)) &
                   & changed(p%block(:, i)) = .true.
             end do
-            held = stiff
+            held = face
             call factor_joints(p%base, p%block, p%row, stiff, springs, changed(1:))
             if (.not. springs%factor%usable) return
          end if

@@ -328,14 +328,15 @@ contains
       logical :: bears(2)
       integer :: j
 
-      state = run%step%state
+      state%motion = run%step%state%motion
+      state%force = run%step%state%force - impact%force_before
+      allocate (state%gap, mold=state%force)
       state%rates = .true.
       ! speeds are found to the same digits in short steps
-      state%fineness = state%fineness*min(1.0_wp, run%step%dt/run%march%longest)
-      state%force = state%force - impact%force_before
+      state%fineness = run%step%state%fineness*min(1.0_wp, run%step%dt/run%march%longest)
+      state%fall = run%step%state%fall
       do j = 1, size(run%contacts%joint)
          associate (closed => impact%closed(:, j))
-            state%face(j)%open = .not. closed
             state%force(:, j) = merge(state%force(:, j), 0.0_wp, [closed, any(closed)])
             part = [restitution*impact%part(:, j), 0.0_wp]
             ! strain pushes no contact apart that bore nothing before, or a force of its own
