@@ -154,7 +154,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       integer, intent(in) :: k, i  !! The force and the joint
 
-      firmness = 1.0_wp/(p%soft(k, i) + tie(p, k, i))
+      firmness = 1.0_wp/(p%bar_give(k, i) + tie(p, k, i))
    end function firmness
 
    !> Compliance that ties a force to the one before; bars have their own
@@ -162,7 +162,7 @@ contains
       type(contact_problem_t), intent(in) :: p
       integer, intent(in) :: k, i
 
-      tie = merge(0.0_wp, compliance*p%give(k, k, i), p%soft(k, i) > 0.0_wp)
+      tie = merge(0.0_wp, compliance*p%give(k, k, i), p%bar_give(k, i) > 0.0_wp)
    end function tie
 
    !> Put the forces onto their faces

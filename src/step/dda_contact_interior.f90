@@ -13,8 +13,8 @@ module dda_contact_interior
    use dda_contact_problem, only : admissible, contact_problem_t, move_blocks, openings, &
       & residual_of, residual_t
    use dda_contact_types, only : unbounded
-   use dda_coulomb_interior, only : absent, coulomb_iterate_t, coulomb_lack_t, coulomb_problem_t, &
-      & distances, find_lack, improve
+   use dda_coulomb_interior, only : absent, coulomb_iterate_t, coulomb_lack_t, distances, &
+      & find_lack, improve
    use dda_friction_cone, only : cone_kind
    use dda_joint_matrix, only : joint_matrix_t, lay_out_joints
    use dda_kinds, only : wp
@@ -49,14 +49,13 @@ contains
    !> Find forces from those at hand. Of Coulomb's law those of smallest residual count. Those of
    !> the convex problem replace them, however far they are from the law: they add no energy
    pure subroutine solve_interior(p, tolerance, is_convex, matrix, force, residual, passes)
-      type(contact_problem_t), intent(in) :: p
+      type(contact_problem_t), intent(inout) :: p
       real(wp), intent(in) :: tolerance       !! Permitted residual, as an opening [m]
       logical, intent(in) :: is_convex        !! True for the convex problem
       type(joint_matrix_t), intent(inout) :: matrix  !! Laid out for the joints, or empty
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       integer, intent(inout) :: passes        !! Factorisations so far
-      type(coulomb_problem_t) :: q
       type(coulomb_lack_t) :: lack
       type(coulomb_iterate_t) :: x
       type(residual_t) :: found
@@ -64,17 +63,17 @@ contains
       integer :: turn, waited
       logical :: is_better, may_restart
 
-      q = interior_problem(p, is_convex, force)
+      call pose_interior(p, is_convex, force)
       if (.not. allocated(matrix%entry)) call lay_out_joints(p%block, size(p%load, 1), &
          & size(p%load, 2), .false., matrix%matrix, matrix%factor, matrix%entry)
-      call begin(p, q, force, merge(convex_lift, near, is_convex), x)
+      call begin(p, force, merge(convex_lift, near, is_convex), x)
       least = huge(least)
       length = 1.0_wp
       waited = 0
       may_restart = .not. is_convex
       do turn = 1, merge(max_convex_iterations, max_iterations, is_convex)
-         call find_lack(q, x, lack)
-         left = most_of(q, x, lack)
+         call find_lack(p%coulomb_problem_t, x, lack)
+         left = most_of(p, x, lack)
          trial = admissible(p, x%force)
          found = residual_of(p, trial, move_blocks(p, trial))
          is_better = merge(left <= tolerance, found%energy < residual%energy, is_convex)
@@ -86,54 +85,54 @@ contains
             & .or. .not. left <= huge(left)) return
          if (may_restart .and. turn <= patience .and. length < stuck) then
             may_restart = .false.
-            call begin(p, q, force, afar, x)
-            call find_lack(q, x, lack)
+            call begin(p, force, afar, x)
+            call find_lack(p%coulomb_problem_t, x, lack)
             least = huge(least)
          end if
-         call improve(q, lack, share, matrix, x, length)
+         call improve(p%coulomb_problem_t, lack, share, matrix, x, length)
          passes = passes + 1
          if (.not. matrix%factor%usable) return
       end do
    end subroutine solve_interior
 
-   !> The problem with bounds, units and regularisation about given forces. The offset of the convex
-   !> one follows from their slip
-   pure type(coulomb_problem_t) function interior_problem(p, is_convex, force) result(q)
-      type(contact_problem_t), intent(in) :: p
+   !> Set bounds, units and regularisation about given forces. The offset of the convex problem
+   !> follows from their slip
+   pure subroutine pose_interior(p, is_convex, force)
+      type(contact_problem_t), intent(inout) :: p
       logical, intent(in) :: is_convex
       real(wp), intent(in) :: force(:, :)
       real(wp) :: opening(3, size(p%joint))
       integer :: k, n
 
-      q = p%coulomb_problem_t
       n = size(p%joint)
-      allocate (q%bounded(4, n), q%unit(3, n))
+      if (.not. allocated(p%unit)) allocate (p%bounded(4, n), p%unit(3, n))
       do k = 1, 3
-         q%unit(k, :) = merge(p%give(k, k, :), 1.0_wp, p%give(k, k, :) > 0.0_wp)
+         p%unit(k, :) = merge(p%give(k, k, :), 1.0_wp, p%give(k, k, :) > 0.0_wp)
       end do
-      where (.not. p%soft > 0.0_wp)
-         q%soft = compliance*q%unit
-         q%gap = q%gap - q%soft*force
+      p%soft = p%bar_give
+      p%gap = p%apart
+      where (.not. p%bar_give > 0.0_wp)
+         p%soft = compliance*p%unit
+         p%gap = p%gap - p%soft*force
       end where
       do k = 1, 3
-         where (.not. p%give(k, k, :) > 0.0_wp) q%soft(k, :) = absent
-         if (k < 3) q%bounded(k, :) = p%give(k, k, :) > 0.0_wp .and. p%shift(k, :) < unbounded
+         where (.not. p%give(k, k, :) > 0.0_wp) p%soft(k, :) = absent
+         if (k < 3) p%bounded(k, :) = p%give(k, k, :) > 0.0_wp .and. p%shift(k, :) < unbounded
       end do
-      q%bounded(3, :) = p%give(3, 3, :) > 0.0_wp .and. p%cone%kind /= cone_kind%no_slip
-      q%bounded(4, :) = q%bounded(3, :)
+      p%bounded(3, :) = p%give(3, 3, :) > 0.0_wp .and. p%cone%kind /= cone_kind%no_slip
+      p%bounded(4, :) = p%bounded(3, :)
+      p%dilatancy = merge(1.0_wp, 0.0_wp, is_convex)
       if (.not. is_convex) return
       opening = openings(p, force, move_blocks(p, force))
       do k = 1, 2
-         where (q%bounded(3, :)) q%gap(k, :) = q%gap(k, :) + p%friction*abs(opening(3, :))
+         where (p%bounded(3, :)) p%gap(k, :) = p%gap(k, :) + p%friction*abs(opening(3, :))
       end do
-      q%dilatancy = 1.0_wp
-   end function interior_problem
+   end subroutine pose_interior
 
    !> Where the search begins: forces and their motion, with distances and flows lifted off zero by
    !> the same product everywhere, but where one is larger
-   pure subroutine begin(p, q, force, lift, x)
+   pure subroutine begin(p, force, lift, x)
       type(contact_problem_t), intent(in) :: p
-      type(coulomb_problem_t), intent(in) :: q
       real(wp), intent(in) :: force(:, :)
       real(wp), intent(in) :: lift  !! Least lift over the size of a force
       type(coulomb_iterate_t), intent(out) :: x
@@ -142,40 +141,40 @@ contains
 
       x%force = force
       x%motion = move_blocks(p, force)
-      x%slack = distances(q, force)
-      opening = openings(p, x%force, x%motion)/q%unit
-      where (.not. q%soft < absent) opening = 0.0_wp
+      x%slack = distances(p%coulomb_problem_t, force)
+      opening = openings(p, x%force, x%motion)/p%unit
+      where (.not. p%soft < absent) opening = 0.0_wp
       ! size of a force, and the part of it by which forces are wrong
-      n_normal = max(1, count(q%soft(1:2, :) < absent))
+      n_normal = max(1, count(p%soft(1:2, :) < absent))
       typical = max(tiny(1.0_wp)/epsilon(1.0_wp), sum(max(x%slack(1:2, :), -opening(1:2, :)), &
-         & q%bounded(1:2, :))/real(n_normal, wp))
-      least = sum(abs(min(x%slack(1:2, :), opening(1:2, :))), q%bounded(1:2, :)) &
+         & p%bounded(1:2, :))/real(n_normal, wp))
+      least = sum(abs(min(x%slack(1:2, :), opening(1:2, :))), p%bounded(1:2, :)) &
          & /real(n_normal, wp)
       least = max(lift*typical, min(highest*typical, 10.0_wp*least))
       allocate (x%flow(4, size(p%joint)), source=0.0_wp)
       do i = 1, size(p%joint)
          do k = 1, 4
-            if (.not. q%bounded(k, i)) cycle
+            if (.not. p%bounded(k, i)) cycle
             flow = merge(opening(min(k, 3), i), -opening(3, i), k < 4)
             if (k < 3) x%slack(k, i) = max(x%slack(k, i), -flow)
             x%slack(k, i) = max(x%slack(k, i), least**2/max(flow, least))
-            x%flow(k, i) = q%unit(min(k, 3), i)*max(flow, least**2/max(x%slack(k, i), least))
+            x%flow(k, i) = p%unit(min(k, 3), i)*max(flow, least**2/max(x%slack(k, i), least))
          end do
       end do
-      where (.not. q%bounded) x%slack = 1.0_wp
+      where (.not. p%bounded) x%slack = 1.0_wp
    end subroutine begin
 
    !> The largest residual and product of distance and flow, as an opening
-   pure real(wp) function most_of(q, x, lack)
-      type(coulomb_problem_t), intent(in) :: q
+   pure real(wp) function most_of(p, x, lack)
+      type(contact_problem_t), intent(in) :: p
       type(coulomb_iterate_t), intent(in) :: x
       type(coulomb_lack_t), intent(in) :: lack
       integer :: i
 
       most_of = maxval(abs(lack%opening))
-      do i = 1, size(q%friction)
-         most_of = max(most_of, maxval(min(x%slack(:, i)*q%unit([1, 2, 3, 3], i), x%flow(:, i)), &
-            & q%bounded(:, i)))
+      do i = 1, size(p%friction)
+         most_of = max(most_of, maxval(min(x%slack(:, i)*p%unit([1, 2, 3, 3], i), x%flow(:, i)), &
+            & p%bounded(:, i)))
       end do
    end function most_of
 

@@ -22,12 +22,17 @@ module dda_contact_problem
    public :: contact_problem_t, pose_contacts, openings, move_blocks, residual_of, residual_t
    public :: admissible, speed_of
 
-   !> Joints and blocks of a group; the blocks are numbered as they come here
+   !> Joints and blocks of a group; the blocks are numbered as they come here. The parent's gaps and
+   !> compliance are those of an interior point about given forces
    type, extends(coulomb_problem_t) :: contact_problem_t
       !> Numbers of the joints: (n_joint)
       integer, allocatable :: joint(:)
       !> Equations of the blocks: (n_block)
       integer, allocatable :: equation(:)
+      !> Openings without motion and forces: (3, n_joint) [m]
+      real(wp), allocatable :: apart(:, :)
+      !> Compliance of bars, 0 of contacts: (3, n_joint) [m/(N/m)]
+      real(wp), allocatable :: bar_give(:, :)
       !> Bounds of the joint forces: (n_joint)
       type(cone_t), allocatable :: cone(:)
       !> Cholesky factor of the matrix of each block: (n_dof, n_dof, n_block)
@@ -78,12 +83,12 @@ contains
       p%limit = p%cone%limit
       p%noise = state%fineness*equations%gap_noise
       if (state%rates) p%noise = of_speeds*p%noise
-      p%gap = state%gap(:, joint)
-      allocate (p%soft, mold=p%gap)
-      p%soft = 0.0_wp
+      p%apart = state%gap(:, joint)
+      allocate (p%bar_give, mold=p%apart)
+      p%bar_give = 0.0_wp
       if (allocated(springs%soft)) then
-         p%soft = springs%soft(:, joint)
-         p%gap = p%gap - p%soft*springs%rest(:, joint)
+         p%bar_give = springs%soft(:, joint)
+         p%apart = p%apart - p%bar_give*springs%rest(:, joint)
       end if
       call see_answers(p)
    end subroutine pose_contacts
@@ -133,7 +138,7 @@ contains
          associate (give => p%give(:, :, i))
             give = 0.0_wp
             do k = 1, 3
-               give(k, k) = p%soft(k, i)
+               give(k, k) = p%bar_give(k, i)
             end do
             do side = 1, 2
                b = p%block(side, i)
@@ -177,7 +182,7 @@ contains
       real(wp) :: openings(3, size(p%joint))  !! The openings: (3, n_joint) [m]
 
       call row_openings(size(motion, 1), size(p%joint), p%block, p%row, motion, openings)
-      openings = openings + p%gap + p%soft*force
+      openings = openings + p%apart + p%bar_give*force
    end function openings
 
    !> Motion of the blocks by forces

@@ -96,7 +96,7 @@ contains
 
    !> Solve one group: faces, sweeps, interior point, and the convex problem where these fail
    pure subroutine settle_group(p, fineness, fall, force, residual, passes)
-      type(contact_problem_t), intent(in) :: p
+      type(contact_problem_t), intent(inout) :: p
       real(wp), intent(in) :: fineness        !! Over the usual tolerance
       real(wp), intent(in) :: fall            !! Free fall in a step [m]
       real(wp), intent(inout) :: force(:, :)  !! Forces within their bounds: (3, n_joint) [N/m]
@@ -144,10 +144,10 @@ contains
       real(wp), dimension(3, size(p%joint)) :: contact, without
       real(wp) :: by_contacts, by_loads, factor
 
-      without = merge(force, 0.0_wp, p%soft > 0.0_wp)
+      without = merge(force, 0.0_wp, p%bar_give > 0.0_wp)
       contact = force - without
-      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - p%gap))
-      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%gap)) - by_loads
+      by_loads = sum(contact*(openings(p, without, move_blocks(p, without)) - p%apart))
+      by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%apart)) - by_loads
       if (by_loads + by_contacts <= 0.0_wp) return
       factor = -by_loads/by_contacts
       if (factor < least_factor) return

@@ -153,7 +153,7 @@ contains
 
       a = p%block(1, i)
       b = p%block(2, i)
-      opening = p%gap(:, i) + p%soft(:, i)*force
+      opening = p%apart(:, i) + p%bar_give(:, i)*force
       call see(n_dof, p%row(:, :, 1, i), motion(:, a), opening)
       call see(n_dof, p%row(:, :, 2, i), motion(:, b), opening)
       before = force
@@ -162,7 +162,7 @@ contains
          if (.not. any(abs(force + shift) > 0.0_wp) .and. all(opening(1:2) >= 0.0_wp) &
             & .and. .not. cone%limit > 0.0_wp) return
          solved = .false.
-         if (.not. any(p%soft(:, i) > 0.0_wp)) then
+         if (.not. any(p%bar_give(:, i) > 0.0_wp)) then
             joint%give = give
             joint%rest = opening - matmul(give, force + shift)
             joint%limit = cone%limit
