@@ -59,12 +59,12 @@ module dda_contact_problem
 
 contains
 
-   !> The problem of some joints
+   !> The problem of some joints. Where these are all, the rows are lent to it
    pure subroutine pose_contacts(equations, springs, state, joint, p)
       type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs  !! Rows and bounds of all joints
+      type(joint_springs_t), intent(inout) :: springs  !! Rows and bounds of all joints
       type(step_state_t), intent(in) :: state
-      integer, intent(in) :: joint(:)  !! Numbers of the joints: (n)
+      integer, intent(in) :: joint(:)  !! Numbers of the joints, rising: (n)
       type(contact_problem_t), intent(out) :: p
       integer :: n_dof
 
@@ -76,7 +76,11 @@ contains
       call number_blocks(springs, size(equations%load, 2), p)
       p%base = equations%base(:n_dof, :n_dof, p%equation)
       p%load = equations%load(:n_dof, p%equation)
-      p%row = springs%row(:n_dof, :, :, joint)
+      if (size(joint) == size(springs%stiffness) .and. n_dof == size(springs%row, 1)) then
+         call move_alloc(springs%row, p%row)
+      else
+         p%row = springs%row(:n_dof, :, :, joint)
+      end if
       p%shift = springs%shift(:, joint)
       p%cone = springs%cone(joint)
       p%friction = p%cone%friction

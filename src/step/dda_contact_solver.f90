@@ -54,7 +54,7 @@ contains
    !> Contact forces and motion of one step
    pure subroutine settle_contacts(equations, springs, state)
       type(equations_t), intent(in) :: equations
-      type(joint_springs_t), intent(in) :: springs  !! Rows and bounds of the joints
+      type(joint_springs_t), intent(inout) :: springs  !! Rows and bounds of the joints
       !> Gaps, and forces to begin with in; motion, forces and faces out
       type(step_state_t), intent(inout) :: state
       type(contact_problem_t) :: p
@@ -85,6 +85,7 @@ contains
          most = max(most, passes)
          state%force(:, p%joint) = force
          state%motion(:size(p%load, 1), p%equation) = move_blocks(p, force)
+         if (.not. allocated(springs%row)) call move_alloc(p%row, springs%row)
          if (residual%opening > state%residual) state%worst = p%joint(residual%joint)
          state%residual = max(residual%opening, state%residual)
       end do

@@ -41,7 +41,7 @@ contains
       type(settings_t), intent(in) :: settings
       !> Blocks assembled; matrix and factor are made again
       type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
+      type(joint_springs_t), intent(inout) :: springs
       !> Faces to begin with in, motion and joints out
       type(step_state_t), intent(inout) :: state
       integer :: pass
@@ -123,7 +123,7 @@ contains
    pure subroutine settle_in_time(target, equations, springs, state)
       real(wp), intent(in) :: target(:)
       type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
+      type(joint_springs_t), intent(inout) :: springs
       type(step_state_t), intent(inout) :: state
       real(wp) :: change, last, least, scale
       integer :: pass, stale
@@ -152,7 +152,7 @@ contains
    pure subroutine sweep_with_bars(equations, springs, state)
       !> Blocks assembled, with their bars in a motion; the conditions of the bars are set
       type(equations_t), intent(inout) :: equations
-      type(joint_springs_t), intent(in) :: springs
+      type(joint_springs_t), intent(inout) :: springs
       type(step_state_t), intent(inout) :: state
       type(joint_springs_t) :: with_bars
       type(step_state_t) :: whole

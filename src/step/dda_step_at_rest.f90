@@ -85,6 +85,8 @@ contains
 
       run%march%held_force = run%equations%fixed%force
       before = run%run_state_t
+      ! they follow with the places of contacts in the next step
+      deallocate (before%contacts%springs%row)
       call take_speed(run, still)
       if (still) call balance_forces(run, still)
       run%step%state%fineness = 1.0_wp

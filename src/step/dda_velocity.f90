@@ -104,7 +104,7 @@ contains
    !> blocks are hit in several places; then it is reduced
    pure subroutine solve_impact(run, impact, allowed, share)
       type(run_t), intent(inout) :: run
-      type(impact_t), intent(in) :: impact
+      type(impact_t), intent(inout) :: impact
       real(wp), intent(in) :: allowed  !! Energy of motion that it may leave [J/m]
       !> Share of the velocities before that is mixed in to keep that energy
       real(wp), intent(out) :: share
@@ -128,7 +128,7 @@ contains
    !> Solve an impact that follows another one at the same moment: their impulses add up
    pure subroutine add_impact(run, impact, allowed, share)
       type(run_t), intent(inout) :: run
-      type(impact_t), intent(in) :: impact
+      type(impact_t), intent(inout) :: impact
       real(wp), intent(in) :: allowed
       real(wp), intent(out) :: share
       real(wp) :: force(3, size(run%contacts%joint)), held(2, size(run%equations%fixed%force))
@@ -270,7 +270,7 @@ contains
    !> Velocities for given speeds at which the contacts must part
    pure subroutine solve_rates(run, impact, restitution)
       type(run_t), intent(inout) :: run
-      type(impact_t), intent(in) :: impact
+      type(impact_t), intent(inout) :: impact
       real(wp), intent(in) :: restitution  !! Share of the restitution that is applied
       type(step_state_t) :: state
       real(wp) :: held_force(size(run%equations%fixed%force))
