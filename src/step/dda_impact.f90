@@ -161,9 +161,14 @@ contains
       if (outcome%overshoot > run%step%overshoot/2.0_wp) &
          & outcome = step_outcome_t(accepted=.true., dt=run%step%dt)
       turn = earliest_reversal(run)
-      if (turn >= outcome%dt) return
+      if (turn >= outcome%dt) then
+         if (.not. (outcome%accepted .and. run%step%ends_at_turn)) return
+         turn = end_of_slip(run)
+         if (turn - outcome%dt <= at_once*run%march%longest .or. turn > run%march%longest) return
+      end if
       outcome%accepted = .false.
       outcome%ends_at_event = .true.
+      outcome%ends_at_turn = .true.
       outcome%dt = turn
    end function check_impact
 
@@ -232,6 +237,25 @@ contains
          end associate
       end do
    end function earliest_reversal
+
+   !> Time at which the first joint comes to rest that slides in all of a solved step, by the mean
+   !> acceleration of the step: one that has been cut to end there may end too early, as blocks that
+   !> move together weigh more than the two of the joint
+   pure real(wp) function end_of_slip(run) result(earliest)
+      type(run_t), intent(in) :: run
+      real(wp) :: loss
+      integer :: j
+
+      earliest = huge(earliest)
+      if (run%step%event_cuts >= max_event_cuts) return
+      do j = 1, size(run%contacts%joint)
+         associate (dt => run%step%dt, speed => run%step%speed(3, j))
+            if (run%contacts%face(j)%slip == 0 .or. run%step%state%face(j)%slip == 0) cycle
+            loss = 2.0_wp*(speed - run%step%state%increment(3, j)/dt)/dt
+            if (speed*loss > 0.0_wp) earliest = min(earliest, speed/loss)
+         end associate
+      end do
+   end function end_of_slip
 
    !> The first impact that is inside a step, by the gaps that the contacts would have at its end
    !> without it

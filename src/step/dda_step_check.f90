@@ -68,6 +68,7 @@ contains
             & call widen_margins(run%system, step%state%motion, run%march%reach)
          if (.not. step%renews) step%overshoot = outcome%overshoot
          step%ends_at_event = outcome%ends_at_event
+         step%ends_at_turn = outcome%ends_at_turn
          if (step%ends_at_event) step%event_cuts = step%event_cuts + 1
          if (.not. outcome%wrong_axes) return
          step%choices = step%choices + 1

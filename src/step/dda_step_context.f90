@@ -49,6 +49,7 @@ module dda_step_context
       logical :: was_cut = .false.
       !> True if the next try ends at an impact, or where slip turns
       logical :: ends_at_event = .false.
+      logical :: ends_at_turn = .false.  !! True if that is the end of a slip
       !> True if a corner moves beyond the margin of its block: margins must be wider
       logical :: beyond_margin = .false.
       !> True if the separating axes must be chosen by the motion of this try
@@ -97,6 +98,7 @@ module dda_step_context
       logical :: accepted = .false.  !! True if the step counts
       logical :: was_cut = .false.   !! True if a longer step did not settle
       logical :: ends_at_event = .false.  !! True if it has been cut to end at such an event
+      logical :: ends_at_turn = .false.   !! True if that is the end of a slip
       integer :: event_cuts = 0           !! Number of these cuts
       !> True if no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.

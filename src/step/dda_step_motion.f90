@@ -32,6 +32,7 @@ contains
          step%was_cut = .false.
          step%choices = 0
          step%ends_at_event = .false.
+         step%ends_at_turn = .false.
          step%event_cuts = 0
          step%overshoot = huge(step%overshoot)
          step%renews = run%settings%current

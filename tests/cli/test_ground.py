@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
+from block_scene import box
 from dda_command import rows_of, run_dda
 
 BLOCKS = "block fixed\n-9 -1\n9 -1\n9 0\n-9 0\nblock\n0 0\n1 0\n1 2\n0 2\nmeasure 0.5 1\n"
@@ -156,3 +157,21 @@ def test_residuals_of_rounding_are_not_reported(tmp_path: Path) -> None:
     assert status == 0, message
     assert float(rows(tmp_path, "results")[0]["contact_residual"]) < 1e-12
     assert "law of contact" not in (tmp_path / "out" / "log.txt").read_text()
+
+
+@pytest.mark.parametrize("slabs", [1, 2, 3])
+def test_slabs_that_move_together_turn_within_a_step(tmp_path: Path, slabs: int) -> None:
+    """Slabs that slide on the ground are stopped by its motion and slide back, in whatever part of a step."""
+    friction, shake, speed, time = math.tan(math.radians(6.0)) * 9.81, 1.2, 0.01, 0.0201
+    text = box(-5.0, -1.0, 10.0, 1.0, "fixed") + "material 2 density 2400\njoint 1 2 friction_deg 6\n"
+    text += "".join(box(-1.0, 0.1 * k, 2.0, 0.1, f"material 2 velocity {speed!r} 0 0") for k in range(slabs))
+    text += f"measure block 2 0 0.05\nbase_acceleration\n0 {shake} 0\n10 {shake} 0\n"
+    status, message = run(
+        tmp_path, text, "&joint friction_deg = 20 /\n&material young = 1e12 /\n&analysis mode = 'dynamic', "
+        f"geometry = 'current', time_step = 1e-3, duration = {time}, unknowns = 3 /\n")
+    assert status == 0, message
+    end = rows(tmp_path, "points")[-1]
+    stop = speed / (shake + friction)
+    back = (shake - friction) * (time - stop)
+    assert float(end["vx"]) == pytest.approx(-back, abs=1e-10)
+    assert float(end["u"]) == pytest.approx((speed * stop - back * (time - stop)) / 2, abs=1e-12)
