@@ -101,7 +101,7 @@ class Train:
 def _roots(a: float, b: float, c: float) -> list[float]:
     """Positive roots of a t2 + b t + c, without cancellation."""
     if a == 0.0:
-        return [-c / b] if b < 0.0 else []
+        return [-c / b] if b < 0.0 <= c else []
     under = b * b - 4.0 * a * c
     if under < 0.0:
         return []
