@@ -214,7 +214,8 @@ def fixed_rows(dda: str, folder: Path, bridge: Bridge, places: list[float], back
         refused = re.search(r"got none at position (\S+);", done.stderr)
         if refused is None:
             return run(dda, folder, name, bridge.deck("position = 0", sweep, backward))
-        places = [place for place in places if place != float(refused[1])]
+        # the message rounds the position
+        places.remove(min(places, key=lambda place: abs(place - float(refused[1]))))
     return []
 
 
