@@ -72,7 +72,7 @@ contains
       !> The largest at closed contacts, and depth that rows of open ones do not give [m]
       real(wp), intent(out) :: error
       type(joint_place_t) :: place
-      real(wp) :: told
+      real(wp) :: by_rows
       integer :: j, k
 
       associate (step => run%step)
@@ -82,9 +82,9 @@ contains
          do j = 1, size(run%contacts%joint)
             call place_joint(step%after%moved, run%contacts%joint(j), place, step%end_gap(:, j))
             do k = 1, run%contacts%joint(j)%n_contact
-               told = run%contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
+               by_rows = run%contacts%gap(k, j) + step%state%increment(k, j) + step%curve(k, j)
                associate (gap => step%end_gap(k, j))
-                  error = max(error, merge(min(-gap, told - gap), abs(gap - told), &
+                  error = max(error, merge(min(-gap, by_rows - gap), abs(gap - by_rows), &
                      & step%state%face(j)%open(k)))
                end associate
             end do
@@ -100,7 +100,7 @@ contains
       real(wp), intent(in) :: motion(:, :)
       type(joint_place_t) :: place(size(run%contacts%place))
       type(joint_place_t) :: after
-      real(wp) :: told(3, size(place)), end_gap(3)
+      real(wp) :: by_rows(3, size(place)), end_gap(3)
       integer :: e, j, side
 
       associate (step => run%step, springs => run%contacts%springs, gap => run%contacts%gap)
@@ -117,11 +117,11 @@ contains
                   & *turn_ratio(motion(3, e))
             end do
          end do
-         told = relative_displacement(springs, motion)
+         by_rows = relative_displacement(springs, motion)
          do j = 1, size(place)
             associate (n => run%contacts%joint(j)%n_contact)
                step%curve(:, j) = 0.0_wp
-               step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - told(:n, j)
+               step%curve(:n, j) = step%end_gap(:n, j) - gap(:n, j) - by_rows(:n, j)
             end associate
             step%state%gap(:, j) = [gap(1:2, j), 0.0_wp]
             ! an impact keeps the forces up to it, and what they close in a short step is a speed
