@@ -24,13 +24,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from scene import SLOW, Run, Scene, run_scene
+from scene import SLOW, Check, Run, Scene, run_scene
 
 MODULES = ("bounces", "trains", "polygons", "drops", "supported", "stacks", "confined")  #: Modules of generators
 #: Time steps [s] and unknowns at which answers must be the same
 STEPS, UNKNOWNS = (4e-3, 2e-3, 1e-3, 5e-4), (3, 6)
 #: Error of clean second order over the tolerance, and the tolerance over what may be left beyond it
 MOST = 4.0
+LEAST_FALL = 3.5  #: Error of a step over that of half the step where truncation is its cause
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,15 @@ def judge(scene: Scene, run: Run, factor: float = 1.0) -> tuple[float, str]:
     return worst, words if not worst <= 1.0 else ""
 
 
+def order_error(scene: Scene, check: Check, coarse: float, fine: float, factor: float) -> float:
+    """Errors of a check at a step and at half of it, as one error over the tolerance at this step."""
+    if scene.is_second_order:
+        return max(abs(4.0 * fine - coarse) / 3.0 * MOST, abs(coarse) / MOST) / (check.tolerance * factor)
+    if abs(coarse) <= check.truncation:
+        return min(abs(coarse) / check.tolerance, abs(fine) * LEAST_FALL / abs(coarse))
+    return abs(coarse) / check.tolerance
+
+
 def judge_order(dda: Path, scene: Scene, run: Run, step: float, unknowns: int) -> tuple[float, str]:
     """Largest error over its tolerance that the second order leaves (Richardson), and what is wrong.
 
@@ -85,7 +95,7 @@ def judge_order(dda: Path, scene: Scene, run: Run, step: float, unknowns: int) -
     worst, words = judge(scene, half) if half.status else (0.0, "")
     for check in [] if half.status else scene.checks:
         coarse, fine = (check.value(one) - check.expected for one in (run, half))
-        left = max(abs(4.0 * fine - coarse) / 3.0 * MOST, abs(coarse) / MOST) / (check.tolerance * factor)
+        left = order_error(scene, check, coarse, fine, factor)
         if not left <= worst:
             worst, words = left, f"{check.name} is off by {coarse:.2g}, and by {fine:.2g} at half the step"
     return worst, words if not worst <= 1.0 else ""
@@ -99,7 +109,8 @@ def ask(dda: Path, folder: Path, family: str, seed: int) -> Outcome:
     if run.seconds >= SLOW:
         return Outcome(family, seed, is_slow=True)
     worst, wrong = judge(scene, run)
-    if wrong and scene.is_second_order and run.status == 0:
+    falls = scene.is_second_order or any(check.truncation for check in scene.checks)
+    if wrong and falls and run.status == 0:
         step, unknowns = float(str(scene.analysis["time_step"])), int(str(scene.analysis["unknowns"]))
         worst, wrong = judge_order(dda, scene, run, step, unknowns)
     is_undecided = run.status in (0, 3) and run.result["verdict"] == "undecided"

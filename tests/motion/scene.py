@@ -88,6 +88,8 @@ class Check:
     expected: float
     tolerance: float
     reason: str  #: Why the tolerance is what it is
+    #: Largest error beyond the tolerance that truncation explains: it must fall with the square of the step at least
+    truncation: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ FOUND = [("elastic_row", 8128002), ("elastic_row", 9119004), ("elastic_row", 101
          ("spin_rough_gravity", 8100002), ("spin_rough_gravity", 9620021), ("spin_smooth_gravity", 9830002),
          ("flight", 50), ("flight", 73), ("flight", 86), ("polygons_meet", 12500002),
          ("polygons_meet", 47150003), ("polygons_meet", 48000042), ("polygons_meet", 48000081),
-         ("polygons_meet", 13700016), ("polygons_meet", 15600007)]
+         ("polygons_meet", 13700016), ("polygons_meet", 15600007), ("swarm", 17600008)]
 #: Seeds whose corners roll, some onto an edge
 ROLLING = [("polygons_meet", 13700016), ("polygons_meet", 48000042), ("spin_rough_gravity", 9620021)]
 DEPENDED = [("touching_row", 2711000)]  #: Seeds whose answers depended on the step or the unknowns
@@ -49,6 +49,15 @@ def test_answers_are_the_same_at_every_step(family: str, tmp_path: Path) -> None
 def test_seeds_that_were_wrong_are_exact(family: str, seed: int, tmp_path: Path) -> None:
     found = run.ask(Path(os.environ["DDA"]), tmp_path, family, seed)
     assert not found.wrong and not found.is_slow, found.wrong
+
+
+@pytest.mark.parametrize(("coarse", "fine", "is_right"), [
+    (1e-10, 1e-10, True), (1e-8, 2e-9, True), (1e-8, 5e-9, False), (9e-7, 0.0, True), (2e-6, 0.0, False)])
+def test_rise_of_energy_is_right_if_small_or_if_it_falls_with_the_step(
+        coarse: float, fine: float, is_right: bool) -> None:
+    scene = run.scene_of("swarm", 0)
+    check = next(check for check in scene.checks if check.name == "rise of energy")
+    assert (run.order_error(scene, check, coarse, fine, 1.0) <= 1.0) == is_right
 
 
 @pytest.mark.parametrize(("family", "seed"), DEPENDED)
