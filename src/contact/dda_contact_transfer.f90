@@ -5,7 +5,7 @@ module dda_contact_transfer
    use dda_contact_search, only : store_near_edges, near_joints
    use dda_contact_types, only : contact_t, joint_place_t, joint_t, new_joint_springs, &
       & place_joint, slip_at
-   use dda_contacts, only : begin_memory, contacts_t, set_joints, set_strength
+   use dda_contacts, only : accept_penetration, begin_memory, contacts_t, set_joints, set_strength
    use dda_entrance, only : contact_key
    use dda_kinds, only : wp
    use dda_near_miss, only : drawn_joints
@@ -229,20 +229,6 @@ contains
          end associate
       end do
    end subroutine keep_shear
-
-   !> Accept the present penetration of a corner. Its removal would add energy: in the shortest
-   !> steps the smallest displacement is a speed
-   pure subroutine accept_penetration(joint, gap)
-      type(joint_t), intent(inout) :: joint
-      real(wp), intent(inout) :: gap(3)  !! Opening at the two contacts, and slip: (3) [m]
-      integer :: k
-
-      do k = 1, joint%n_contact
-         if (gap(k) >= 0.0_wp) cycle
-         joint%contact(k)%closed_at = joint%contact(k)%closed_at + gap(k)
-         gap(k) = 0.0_wp
-      end do
-   end subroutine accept_penetration
 
    !> Set the slip of a joint to zero at the present position
    pure subroutine lock_joint(vertex, joint)

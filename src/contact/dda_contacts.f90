@@ -11,8 +11,8 @@ module dda_contacts
    implicit none
    private
 
-   public :: edge_pairs_t, joint_search_t, contacts_t, begin_forces, joint_place, move_contacts
-   public :: place_all_joints
+   public :: edge_pairs_t, joint_search_t, contacts_t, accept_penetration, begin_forces
+   public :: joint_place, move_contacts, place_all_joints
    public :: begin_memory, find_contacts, follow_contacts, keep_contacts, raise_springs
    public :: set_joints, set_strength
 
@@ -257,7 +257,12 @@ contains
       integer :: j
 
       do j = 1, size(contacts%joint)
-         call place_joint(system%moved, contacts%joint(j), contacts%place(j), gap)
+         associate (joint => contacts%joint(j))
+            if (.not. contacts%remember) &
+               & joint%contact%closed_at = max(0.0_wp, joint%contact%closed_at)
+            call place_joint(system%moved, joint, contacts%place(j), gap)
+            if (.not. contacts%remember) call accept_penetration(joint, gap)
+         end associate
          contacts%gap(:, j) = gap - [0.0_wp, 0.0_wp, contacts%past_slip(j)]
       end do
       before = contacts%springs
@@ -270,4 +275,18 @@ contains
             & - contacts%springs%stiffness(j)*contacts%gap(:, j)
       end do
    end subroutine follow_contacts
+
+   !> Accept the present penetration of corners. Its removal would add energy: in the shortest steps
+   !> the smallest displacement is a speed
+   pure subroutine accept_penetration(joint, gap)
+      type(joint_t), intent(inout) :: joint
+      real(wp), intent(inout) :: gap(3)  !! Opening at the two contacts, and slip: (3) [m]
+      integer :: k
+
+      do k = 1, joint%n_contact
+         if (gap(k) >= 0.0_wp) cycle
+         joint%contact(k)%closed_at = joint%contact(k)%closed_at + gap(k)
+         gap(k) = 0.0_wp
+      end do
+   end subroutine accept_penetration
 end module dda_contacts
