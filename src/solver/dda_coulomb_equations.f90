@@ -12,8 +12,8 @@
 !> matrix factored.
 module dda_coulomb_equations
    use dda_block_factor, only : substitute
-   use dda_coulomb_joints, only : coulomb_joints_t
-   use dda_coulomb_law, only : add_springs, coulomb_state_t, damped_mass, joint_stiffness
+   use dda_coulomb_joints, only : coulomb_joints_t, damped_mass
+   use dda_coulomb_law, only : add_springs, coulomb_state_t, joint_stiffness
    use dda_crushed_joint, only : place_strips
    use dda_joint_graph, only : joint_motion
    use dda_joint_matrix, only : factor_joints, joint_matrix_t, lay_out_joints

@@ -10,7 +10,7 @@ module dda_coulomb_joints
    private
 
    public :: coulomb_joints_t, end_role, end_role_enum, shear_role, shear_role_enum
-   public :: new_coulomb_joints, take_coulomb_joints
+   public :: damped_mass, new_coulomb_joints, take_coulomb_joints
    public :: set_force_unit, in_units, in_newtons, in_motion_units, in_metres
 
    !> Possible states of a corner of a joint
@@ -216,6 +216,19 @@ contains
       metres(:2, :) = motion(:2, :)*joints%motion_unit
       metres(3:, :) = motion(3:, :)*(joints%motion_unit/joints%arm_unit)
    end function in_metres
+
+   !> Matrix of each block without joints: a multiple of its mass
+   pure function damped_mass(joints, damping) result(matrix)
+      type(coulomb_joints_t), intent(in) :: joints
+      real(wp), intent(in) :: damping                  !! The multiple
+      real(wp) :: matrix(3, 3, joints%graph%n_block)  !! The matrices: (3, 3, n_block)
+      integer :: k
+
+      matrix = 0.0_wp
+      do k = 1, 3
+         matrix(k, k, :) = damping*joints%graph%mass(k, :)
+      end do
+   end function damped_mass
 
    !> Mean of numbers, 0 if there are none
    pure real(wp) function mean(x)

@@ -19,9 +19,9 @@ module dda_coulomb_law
    implicit none
    private
 
-   public :: coulomb_state_t, face, face_enum, break_joint, damped_mass, strength
+   public :: coulomb_state_t, face, face_enum, break_joint, strength
    public :: unloaded_state, add_springs, apply_law, force_faces, imbalance, joint_stiffness
-   public :: crush_joint, normal_forces, shear_face, spring_forces, yield_joint
+   public :: crush_joint, normal_forces, shear_face, shear_limit, spring_forces, yield_joint
 
    !> State of a corner or a joint: a corner is open or closed, a joint sticks, slides or is free
    type :: face_enum
@@ -129,6 +129,19 @@ contains
       end associate
    end function strength
 
+   !> Largest shear force that a joint bears: without end where it cannot slide
+   pure real(wp) function shear_limit(joints, j, normal, cohesion) result(limit)
+      type(coulomb_joints_t), intent(in) :: joints
+      integer, intent(in) :: j                    !! Number of the joint
+      real(wp), intent(in) :: normal(2)           !! N1, N2
+      real(wp), intent(in), optional :: cohesion  !! Shear force without them; 0 if absent
+
+      limit = huge(limit)
+      if (joints%shear_role(j) /= shear_role%frictional) return
+      limit = joints%graph%friction(j)*(normal(1) + normal(2))
+      if (present(cohesion)) limit = limit + cohesion
+   end function shear_limit
+
    !> State of a joint along itself, where only one is possible
    pure integer(small) function shear_face(joints, j, ends, otherwise)
       type(coulomb_joints_t), intent(in) :: joints
@@ -155,7 +168,7 @@ contains
       real(wp), intent(in), contiguous :: opening(:, :)
       !> State after; its motion and load are left alone
       type(coulomb_state_t), intent(inout) :: after
-      real(wp) :: bond(3), bound, trial
+      real(wp) :: bond(3), trial
       integer :: i, j
 
       do j = 1, size(opening, 2)
@@ -187,12 +200,9 @@ contains
          trial = before%force(3, j) - opening(3, j)/joints%graph%compliance(j)
          after%face(3, j) = face%stuck
          after%force(3, j) = trial
-         if (joints%shear_role(j) == shear_role%frictional) then
-            bound = joints%graph%friction(j)*(after%force(1, j) + after%force(2, j))
-            if (abs(trial) > bound + bond(3)) then
-               after%face(3, j) = merge(face%slides, face%slides_back, trial > 0.0_wp)
-               after%force(3, j) = sign(max(0.0_wp, bound), trial)
-            end if
+         if (abs(trial) > shear_limit(joints, j, after%force(:2, j), bond(3))) then
+            after%face(3, j) = merge(face%slides, face%slides_back, trial > 0.0_wp)
+            after%force(3, j) = sign(max(0.0_wp, shear_limit(joints, j, after%force(:2, j))), trial)
          end if
          after%face(3, j) = shear_face(joints, j, after%face(:2, j), after%face(3, j))
          if (after%face(3, j) == face%free) after%force(3, j) = 0.0_wp
@@ -231,35 +241,20 @@ contains
             broken = .true.
          end do
          state%face(3, j) = shear_face(joints, j, state%face(:2, j), state%face(3, j))
-         if (joints%shear_role(j) == shear_role%frictional) then
-            bound = joints%graph%friction(j)*sum(state%force(:2, j)) + bond(3)
-            if (abs(state%force(3, j)) > bound .and. state%face(3, j) == face%stuck) then
-               state%face(3, j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
-               broken = .true.
-            end if
-            if (state%face(3, j) == face%free) then
-               state%force(3, j) = 0.0_wp
-            else if (state%face(3, j) /= face%stuck) then
-               state%force(3, j) = real(state%face(3, j), wp)*bound
-            end if
+         bound = shear_limit(joints, j, state%force(:2, j), bond(3))
+         if (abs(state%force(3, j)) > bound .and. state%face(3, j) == face%stuck) then
+            state%face(3, j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
+            broken = .true.
+         end if
+         if (state%face(3, j) == face%free) then
+            state%force(3, j) = 0.0_wp
+         else if (state%face(3, j) /= face%stuck) then
+            state%force(3, j) = real(state%face(3, j), wp)*bound
          end if
          if (.not. broken) exit
       end do
       state%slip(j) = state%slip(j) + joints%graph%compliance(j)*(state%force(3, j) - shear)
    end subroutine break_joint
-
-   !> Matrix of each block without joints: a multiple of its mass
-   pure function damped_mass(joints, damping) result(matrix)
-      type(coulomb_joints_t), intent(in) :: joints
-      real(wp), intent(in) :: damping                  !! The multiple
-      real(wp) :: matrix(3, 3, joints%graph%n_block)  !! The matrices: (3, 3, n_block)
-      integer :: k
-
-      matrix = 0.0_wp
-      do k = 1, 3
-         matrix(k, k, :) = damping*joints%graph%mass(k, :)
-      end do
-   end function damped_mass
 
    !> Stiffness of a joint: rate of force = -stiffness*rate of opening
    pure function joint_stiffness(joints, j, faces) result(stiffness)
@@ -272,8 +267,6 @@ contains
 
       stiffness = 0.0_wp
       do i = 1, 2
-         if (faces(i) == face%closed) stiffness(i, i) = 1.0_wp/joints%graph%compliance(j)
-         if (.not. allocated(joints%share)) cycle
          unit = 0.0_wp
          unit(i) = -1.0_wp
          stiffness(:2, i) = normal_forces(joints, j, faces(:2), unit)

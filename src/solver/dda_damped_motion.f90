@@ -5,8 +5,7 @@
 module dda_damped_motion
    use dda_coulomb_interior, only : absent, coulomb_iterate_t, coulomb_lack_t, coulomb_problem_t, &
       & distances, find_lack, improve, mean_product
-   use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_coulomb_law, only : damped_mass
+   use dda_coulomb_joints, only : coulomb_joints_t, damped_mass, end_role, shear_role
    use dda_joint_matrix, only : joint_matrix_t
    use dda_kinds, only : wp
    implicit none

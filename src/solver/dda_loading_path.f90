@@ -18,7 +18,7 @@ module dda_loading_path
    use dda_coulomb_equations, only : coulomb_equations_t, new_coulomb_equations
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, in_metres, in_motion_units, &
       & in_newtons, in_units, set_force_unit, shear_role, take_coulomb_joints
-   use dda_coulomb_law, only : coulomb_state_t, imbalance, strength, unloaded_state
+   use dda_coulomb_law, only : coulomb_state_t, imbalance, shear_limit, strength, unloaded_state
    use dda_crushed_joint, only : reserve
    use dda_joint_graph, only : breaks, joint_graph_t
    use dda_kinds, only : wp
@@ -313,8 +313,8 @@ contains
             if (joints%end_role(i, j) /= end_role%contact) cycle
             violation = max(violation, -reserve(joints, j, i, state%force(:2, j)) - bond(i))
          end do
-         if (joints%shear_role(j) == shear_role%frictional) violation = max(violation, &
-            & abs(state%force(3, j)) - joints%graph%friction(j)*sum(state%force(:2, j)) - bond(3))
+         violation = max(violation, abs(state%force(3, j)) &
+            & - shear_limit(joints, j, state%force(:2, j), bond(3)))
       end do
    end function violation
 

@@ -6,7 +6,8 @@
 submodule (dda_loading_path:dda_path_steps) dda_path_bends
    use dda_crushed_joint, only : bear_side, can_crush, reserve
    use dda_coulomb_joints, only : end_role, shear_role
-   use dda_coulomb_law, only : face, imbalance, normal_forces, shear_face, spring_forces
+   use dda_coulomb_law, only : face, imbalance, normal_forces, shear_face, shear_limit, &
+      & spring_forces
    use dda_event_rates, only : solve_rates, weak_force
    use dda_kinds, only : small
    use dda_path_event, only : go_ahead, left_to_event
@@ -288,9 +289,8 @@ contains
             gives = .true.
          end do
          faces(3, j) = shear_face(joints, j, faces(:2, j), faces(3, j))
-         if (faces(3, j) /= face%stuck .or. joints%shear_role(j) /= shear_role%frictional) cycle
-         if (abs(state%force(3, j)) <= joints%graph%friction(j)*sum(state%force(:2, j)) &
-            & + weak_force) cycle
+         if (faces(3, j) /= face%stuck .or. abs(state%force(3, j)) &
+            & <= shear_limit(joints, j, state%force(:2, j)) + weak_force) cycle
          faces(3, j) = merge(face%slides, face%slides_back, state%force(3, j) > 0.0_wp)
          gives = .true.
       end do

@@ -1,8 +1,8 @@
 !> The next event on a path, at which a joint changes its state
 module dda_path_event
    use dda_coulomb_joints, only : coulomb_joints_t, end_role, shear_role
-   use dda_coulomb_law, only : break_joint, coulomb_state_t, face, shear_face, strength, &
-      & crush_joint, yield_joint
+   use dda_coulomb_law, only : break_joint, coulomb_state_t, crush_joint, face, &
+      & shear_face, shear_limit, strength, yield_joint
    use dda_crushed_joint, only : can_crush, reserve, strip_gap_rate
    use dda_event_rates, only : rates_t, weak_force
    use dda_kinds, only : small, wp
@@ -79,7 +79,7 @@ contains
       !> Force by which an event must lead beyond zero at that distance to count; any if absent
       real(wp), intent(in), optional :: minor
       type(least_t) :: least
-      real(wp) :: bond(3), bound(2), quantity(2)
+      real(wp) :: bond(3), quantity(2)
       integer :: i, j
       logical :: crushes
 
@@ -109,13 +109,10 @@ contains
          if (rates%face(3, j) /= face%stuck) cycle
          if (joints%shear_role(j) /= shear_role%frictional) cycle
          least%still = rates%still/joints%graph%compliance(j)
-         bound = joints%graph%friction(j) &
-            & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)]
-         bound(1) = bound(1) + bond(3)
-         call meet(bound(1) - state%force(3, j), bound(2) - rates%force(3, j), least, &
-            & event_kind%slides, j, 0, event)
-         call meet(bound(1) + state%force(3, j), bound(2) + rates%force(3, j), least, &
-            & event_kind%slides_back, j, 0, event)
+         quantity = shear_left(joints, state, rates, j, 1)
+         call meet(quantity(1) + bond(3), quantity(2), least, event_kind%slides, j, 0, event)
+         quantity = shear_left(joints, state, rates, j, -1)
+         call meet(quantity(1) + bond(3), quantity(2), least, event_kind%slides_back, j, 0, event)
       end do
    end function next_event
 
@@ -202,8 +199,8 @@ contains
       integer, intent(in) :: sense  !! 1 against a positive shear force, -1 against a negative one
       real(wp) :: left(2)           !! As a force, and its rate
 
-      left = joints%graph%friction(j) &
-         & *[state%force(1, j) + state%force(2, j), rates%force(1, j) + rates%force(2, j)] &
+      left = [shear_limit(joints, j, state%force(:2, j)), &
+         & shear_limit(joints, j, rates%force(:2, j))] &
          & - real(sense, wp)*[state%force(3, j), rates%force(3, j)]
    end function shear_left
 
@@ -383,17 +380,15 @@ contains
       type(coulomb_state_t), intent(inout) :: state
       real(wp) :: bond(3), bound
 
-      bound = joints%graph%friction(j)*(state%force(1, j) + state%force(2, j))
       select case (does)
       case (face%stuck)
-         state%force(3, j) = trial
-         if (joints%shear_role(j) == shear_role%frictional) then
-            bond = strength(joints, state, j)
-            state%force(3, j) = max(-bound - bond(3), min(bound + bond(3), trial))
-         end if
+         bond = strength(joints, state, j)
+         bound = shear_limit(joints, j, state%force(:2, j), bond(3))
+         state%force(3, j) = max(-bound, min(bound, trial))
       case (face%free)
          state%force(3, j) = 0.0_wp
       case default
+         bound = shear_limit(joints, j, state%force(:2, j))
          state%force(3, j) = real(does, wp)*max(0.0_wp, bound)
       end select
    end subroutine take_shear
