@@ -55,7 +55,7 @@ contains
       if (present(symmetric)) matrix%symmetric = symmetric
       matrix%n_dof = n_dof
       call elimination_order(n_block, pair, block, matrix%has_chains)
-      allocate (matrix%place(n_block))
+      allocate (matrix%place(n_block), matrix%diagonal(n_dof, n_dof, n_block))
       matrix%place(block) = [(i, i=1, n_block)]
       allocate (matrix%pair, source=pair)
       do i = 1, size(pair, 2)
@@ -63,7 +63,6 @@ contains
             if (matrix%place(p(1)) < matrix%place(p(2))) p = p([2, 1])
          end associate
       end do
-      allocate (matrix%diagonal(n_dof, n_dof, n_block))
       allocate (matrix%coupling(n_dof, n_dof, size(pair, 2)))
       allocate (matrix%upper(n_dof, n_dof, merge(0, size(pair, 2), matrix%symmetric)))
    end subroutine set_pattern
