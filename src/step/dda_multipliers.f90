@@ -22,11 +22,12 @@ module dda_multipliers
 
    !> Maximum number of multiplier iterations
    integer, parameter :: max_passes = 100
-   !> Change of a converged force over the sum of forces
+   !> Change of a converged force over the sum of forces, and distance of a point from its target
+   !> over the motion of a step in time
    real(wp), parameter :: fine = 1.0e-10_wp
-   !> Change of a force that a step accepts
+   !> Distance that a step in time accepts
    real(wp), parameter :: coarse = 1.0e-7_wp
-   !> Least reduction of the change of restraint forces per iteration
+   !> Least reduction of that distance per iteration
    real(wp), parameter :: falling = 0.9_wp
    integer, parameter :: patience = 5
    !> Maximum number of changes of bar states, and number with simultaneous changes
@@ -125,27 +126,29 @@ contains
       type(equations_t), intent(inout) :: equations
       type(joint_springs_t), intent(inout) :: springs
       type(step_state_t), intent(inout) :: state
-      real(wp) :: change, last, least, scale
+      real(wp) :: change, last, least, miss, scale
       integer :: pass, stale
 
-      change = huge(change)
+      miss = huge(miss)
       least = huge(least)
       stale = 0
       do pass = 1, max_passes
-         last = change
+         last = miss
          call sweep_with_bars(equations, springs, state)
          if (.not. state%settled) return
-         call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change)
-         scale = equations%force_scale + sum(abs(equations%fixed%force))
-         if (change <= fine*scale) return
+         call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change, &
+            & miss)
+         scale = max(state%fall, maxval(abs(state%motion(:2, :))))
+         if (miss <= fine*scale) return
          ! what sweeps leave is no more to be corrected
-         if (change <= coarse*scale .and. change > last/2.0_wp) return
+         if (miss <= coarse*scale .and. miss > last/2.0_wp) return
          ! contacts may block a prescribed displacement
-         stale = merge(0, stale + 1, change < falling*least)
+         stale = merge(0, stale + 1, miss < falling*least)
          if (stale == patience) exit
-         least = min(least, change)
+         least = min(least, miss)
       end do
-      state%settled = change <= coarse*scale
+      ! a point that rests misses its place by what contacts leave of theirs, which ends no run
+      state%settled = miss <= coarse*scale .or. .not. any(abs(equations%fixed%rate) > 0.0_wp)
    end subroutine settle_in_time
 
    !> Sweep the contacts, and in a motion with them the bars

@@ -158,17 +158,20 @@ contains
    end subroutine hold_rigidly
 
    !> Correct the forces of the springs, and the load, after a motion
-   pure subroutine correct_fixed_forces(target, motion, fixed, load, change)
+   pure subroutine correct_fixed_forces(target, motion, fixed, load, change, miss)
       real(wp), intent(in) :: target(:)
       real(wp), intent(in) :: motion(:, :)          !! Motion of the blocks: (n_dof, n_equation)
       type(fixed_points_t), intent(inout) :: fixed  !! The springs; their forces are corrected
       real(wp), intent(inout) :: load(:, :)         !! The load of the blocks: (n_dof, n_equation)
       !> Largest correction in excess of round-off of the motion times the stiffness [N/m]
       real(wp), intent(out) :: change
+      !> Largest distance of a point from its target in excess of round-off [m]
+      real(wp), intent(out), optional :: miss
       real(wp) :: more, rounding
       integer :: i
 
       change = 0.0_wp
+      if (present(miss)) miss = 0.0_wp
       do i = 1, size(fixed%point)
          associate (row => fixed%row(:, i), e => fixed%equation(i))
             more = fixed%stiffness(i)*(target(i) - dot_product(row, motion(:, e)))
@@ -177,6 +180,7 @@ contains
             rounding = rounded*fixed%stiffness(i) &
                & *(abs(target(i)) + dot_product(abs(row), abs(motion(:, e))))
             change = max(change, abs(more) - rounding)
+            if (present(miss)) miss = max(miss, (abs(more) - rounding)/fixed%stiffness(i))
          end associate
       end do
    end subroutine correct_fixed_forces
