@@ -278,7 +278,7 @@ contains
    end function least_beside
 
    !> Joints of blocks that touch at present or may touch in a step
-   pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint)
+   pure subroutine near_joints(search, system, travel, closed, reach, in_time, joint, tried)
       type(joint_search_t), intent(in) :: search
       type(block_system_t), intent(in) :: system
       !> Expected motion of the corners, for directions and ratios only: (2, n_vertex) [m]
@@ -289,10 +289,13 @@ contains
       !> True in dynamic runs, where convex blocks use separating axes
       logical, intent(in) :: in_time
       type(joint_t), allocatable, intent(out) :: joint(:)
+      !> True if the expected motion is that of a try; false if absent
+      logical, intent(in), optional :: tried
       type(neighbourhood_t) :: near
 
       near%vertex = system%moved
       near%travel = travel
+      if (present(tried)) near%tried = tried
       if (in_time) near%ahead = system%moved + travel
       near%closed = closed
       call find_joints(search, system, reach, near, joint)

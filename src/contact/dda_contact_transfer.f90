@@ -61,7 +61,7 @@ contains
    end subroutine search_contacts
 
    !> Contacts of the present blocks; their springs carry forces from openings and slip
-   pure subroutine renew_contacts(system, travel, reach, penalty_ratio, n_dof, contacts)
+   pure subroutine renew_contacts(system, travel, reach, penalty_ratio, n_dof, contacts, tried)
       type(block_system_t), intent(in) :: system
       !> Expected motion of the corners, for directions and ratios only: (2, n_vertex) [m]
       real(wp), intent(in) :: travel(:, :)
@@ -73,6 +73,8 @@ contains
       integer, intent(in) :: n_dof
       !> Contacts of the previous step on entry, of the next on return
       type(contacts_t), intent(inout) :: contacts
+      !> True if the expected motion is that of a try; false if absent
+      logical, intent(in), optional :: tried
       type(past_contact_t), allocatable :: past(:)
       type(contacts_t) :: before
       type(joint_t), allocatable :: joint(:)
@@ -86,7 +88,7 @@ contains
       far = reach + depth_inside(system, contacts)
       call store_near_edges(contacts%search, system, far)
       call near_joints(contacts%search, system, travel, closed, far, &
-         & .not. contacts%remember, joint)
+         & .not. contacts%remember, joint, tried)
       allocate (source(2, size(joint)), place(size(joint)))
       call match_contacts(system, joint, reach, past, source)
       do j = 1, size(joint)

@@ -26,6 +26,8 @@ module dda_entrance
       real(wp), allocatable :: travel(:, :)
       !> Expected corners, if convex blocks use separating axes: (2, n_vertex) [m]
       real(wp), allocatable :: ahead(:, :)
+      !> True if the expected motion is that of a try
+      logical :: tried = .false.
       !> Penetration within which two blocks still count as separated [m]
       real(wp) :: level = 0.0_wp
       !> True in the reference shape, before any contact

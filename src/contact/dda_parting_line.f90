@@ -16,6 +16,8 @@ module dda_parting_line
       integer :: edge = 0               !! Number of the edge; 0 for none
       integer :: corner = 0             !! Corner of the opposite block nearest to the line
       real(wp) :: gap = -huge(1.0_wp)   !! Height of that corner above the line [m]
+      !> Height of the block above it after the expected motion [m]
+      real(wp) :: after = -huge(1.0_wp)
       real(wp) :: time = -huge(1.0_wp)  !! Crossing time in units of the expected motion
       !> True if the block is beyond the line before the expected motion and after it
       logical :: parts = .false.
@@ -23,6 +25,9 @@ module dda_parting_line
 
    !> Advantage in gap below which a separating axis is kept, over the length of the edge
    real(wp), parameter :: lasting = 1.0e-9_wp
+   !> Advantage in gap after a try above which a line is chosen, over the level: what the check of
+   !> axes counts
+   real(wp), parameter :: clear = 1.0e-2_wp
 
 contains
 
@@ -86,14 +91,14 @@ contains
       call add_single(near, line%corner, line%edge, side, taken, list)
    end subroutine add_parted_joint
 
-   !> The edge whose line separates two blocks: the previous one of touching blocks; else the one
-   !> that the opposite block would cross last
+   !> The edge whose line separates two blocks: the one that does so after a try; the previous one
+   !> of touching blocks; else the one that the opposite block would cross last
    pure function parting_line(near, edge_pair, reach) result(best)
       type(neighbourhood_t), intent(in) :: near
       integer, intent(in) :: edge_pair(:, :)
       real(wp), intent(in) :: reach  !! Largest distance of the blocks [m]
       type(line_t) :: best
-      type(line_t) :: free, line, held, widest
+      type(line_t) :: apart, free, line, held, widest
       integer :: i, side
 
       do side = 1, 2
@@ -101,21 +106,28 @@ contains
             if (any(edge_pair(side, :i - 1) == edge_pair(side, i))) cycle
             line = line_of(near, edge_pair(side, i), near%outline%block(edge_pair(3 - side, i)))
             if (line%gap > widest%gap) widest = line
+            if (line%gap >= -near%level .and. line%after > apart%after) apart = line
             if (is_later(line, best)) best = line
-            if (is_later(line, free) .and. .not. is_covered(near, line)) free = line
+            if (is_later(line, free)) then
+               if (line%parts .or. .not. is_covered(near, line)) free = line
+            end if
             if (was_closed(near, line%corner, line%edge) .and. line%gap > held%gap) held = line
          end do
       end do
-      ! covered edges count only if there are no others
+      ! covered edges that do not part the blocks count only if there are no others
       if (free%time > -huge(1.0_wp)) best = free
       if (widest%gap > reach) best = widest
-      if (held%edge == 0) return
-      if (held%gap >= widest%gap - lasting*near%outline%length(held%edge)) best = held
+      ! a line that has been found by a try to separate the blocks precedes those that hold them off
+      if (near%tried .and. apart%after > max(0.0_wp, held%after) + clear*near%level) then
+         best = apart
+      else if (held%edge > 0) then
+         if (held%gap >= widest%gap - lasting*near%outline%length(held%edge)) best = held
+      end if
    end function parting_line
 
-   !> True if a line is crossed later than another one, or at the same time with a larger gap. A
-   !> line that parts the blocks throughout precedes those that they have crossed within the
-   !> tolerance
+   !> True if a line is crossed later than another one, or at the same time with a larger gap after
+   !> the expected motion. A line that parts the blocks throughout precedes those that they have
+   !> crossed within the tolerance
    pure logical function is_later(line, other)
       type(line_t), intent(in) :: line, other
 
@@ -123,7 +135,7 @@ contains
          is_later = line%parts
       else
          is_later = line%time > other%time &
-            & .or. .not. line%time < other%time .and. line%gap > other%gap
+            & .or. .not. line%time < other%time .and. line%after > other%after
       end if
    end function is_later
 
@@ -142,7 +154,6 @@ contains
       integer, intent(in) :: edge   !! Number of the edge
       integer, intent(in) :: block  !! The other block
       real(wp), allocatable :: height(:)
-      real(wp) :: after
       integer :: next
 
       associate (from => near%first_vertex(block), to => near%first_vertex(block + 1) - 1)
@@ -154,10 +165,10 @@ contains
          line%corner = from - 1 + minloc(height, dim=1)
          line%gap = minval(height)
          height(:) = heights(near%ahead, edge, next, from, to)
-         after = minval(height)
-         line%parts = min(line%gap, after) > 0.0_wp
+         line%after = minval(height)
+         line%parts = min(line%gap, line%after) > 0.0_wp
       end associate
-      associate (left => line%gap + near%level, way => line%gap - after)
+      associate (left => line%gap + near%level, way => line%gap - line%after)
          line%time = sign(huge(1.0_wp), left)
          if (left < 0.0_wp .or. .not. way > tiny(1.0_wp)) return
          if (left < huge(1.0_wp)**0.5_wp*way) line%time = left/way

@@ -97,7 +97,7 @@ contains
             if (.not. allocated(run%march%reach)) &
                & run%march%reach = first_reach(system, settings, run%march)
             call renew_contacts(system, run%step%travel, run%march%reach, settings%penalty_ratio, &
-               & settings%n_dof, run%contacts)
+               & settings%n_dof, run%contacts, run%step%choices > 0)
             call renew_springs(before, run%contacts%springs, run%equations)
          else
             call follow_contacts(system, settings%penalty_ratio, settings%n_dof, run%contacts)
