@@ -71,6 +71,12 @@ contains
          step%ends_at_turn = outcome%ends_at_turn
          if (step%ends_at_event) step%event_cuts = step%event_cuts + 1
          if (.not. outcome%wrong_axes) return
+         ! an event at a line that held off separate blocks is none
+         if (outcome%met_nothing .and. step%uncut > step%dt) then
+            run%march%dt = step%uncut
+            step%overshoot = huge(step%overshoot)
+            step%uncut = 0.0_wp
+         end if
          step%choices = step%choices + 1
          step%travel = travel_by(run%system, step%state%motion)
       end associate
@@ -108,6 +114,9 @@ contains
                   else if (contact_gap <= near_gap(system, block)) then
                      replaced = .true.
                   end if
+                  if (step%event_cuts > 0 .and. contact_gap <= near_gap(system, block)) &
+                     & outcome%met_nothing = outcome%met_nothing &
+                     & .or. minval(run%contacts%gap(:n, j)) > near_gap(system, block)
                end if
                if (gap > -matters) cycle
                before = min(0.0_wp, block_gap(system%first_vertex, system%moved, block))

@@ -54,6 +54,8 @@ module dda_step_context
       logical :: beyond_margin = .false.
       !> True if the separating axes must be chosen by the motion of this try
       logical :: wrong_axes = .false.
+      !> True if such an axis alone has closed a contact by which the step was cut
+      logical :: met_nothing = .false.
       !> Depth of contacts that meet in the step at its end without their forces [m]
       real(wp) :: overshoot = huge(1.0_wp)
    end type step_outcome_t
@@ -100,6 +102,8 @@ module dda_step_context
       logical :: ends_at_event = .false.  !! True if it has been cut to end at such an event
       logical :: ends_at_turn = .false.   !! True if that is the end of a slip
       integer :: event_cuts = 0           !! Number of these cuts
+      !> Length before the first of them; 0 after it has been tried again [s]
+      real(wp) :: uncut = 0.0_wp
       !> True if no contact broke in it, so that its end is one of equilibrium
       logical :: whole = .true.
       !> Largest motion of a point, in it and in the try before: [m]

@@ -34,6 +34,7 @@ contains
          step%ends_at_event = .false.
          step%ends_at_turn = .false.
          step%event_cuts = 0
+         step%uncut = run%march%dt
          step%overshoot = huge(step%overshoot)
          step%renews = run%settings%current
          ! nothing is hit slower than weight or the tolerance of contact forces lets it close
