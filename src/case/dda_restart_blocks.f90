@@ -2,7 +2,7 @@
 submodule (dda_restart) dda_restart_blocks
    use dda_block_system, only : begin_motion
    use dda_block_update, only : displaced
-   use dda_contact_search, only : law_between
+   use dda_contact_search, only : law_of
    use dda_contact_types, only : joint_springs_t, joint_t, place_joint
    use dda_contacts, only : begin_memory, set_joints
    use dda_outline, only : outline_of, outline_t
@@ -198,7 +198,7 @@ contains
          joint(j)%found = .true.
          joint(j)%n_contact = whole(1, j)
          joint(j)%block = blocks_of(outline, whole(:, j), 1)
-         joint(j)%law = law_between(contacts%search, system%material(joint(j)%block))
+         joint(j)%law = law_of(contacts%search, system, joint(j))
          joint(j)%length = number(1, j)
          joint(j)%contact%edge_side = whole(2:3, j)
          joint(j)%contact%length = number(2:3, j)

@@ -20,7 +20,7 @@ module dda_contact_search
    implicit none
    private
 
-   public :: find_edge_pairs, new_joint_search, store_near_edges, law_between, touching_joints
+   public :: find_edge_pairs, new_joint_search, store_near_edges, law_of, touching_joints
    public :: near_joints, remember_drawn
 
    !> Smallest and largest margin over the block size
@@ -175,13 +175,20 @@ contains
       if (present(tolerance)) new_joint_search%tolerance = tolerance
    end function new_joint_search
 
-   !> Number of the law between two materials in the laws of the contacts
-   pure integer function law_between(search, material)
+   !> Number of the law of a joint in the laws of the contacts: that of its first edge, or that
+   !> between the materials of its blocks
+   pure integer function law_of(search, system, joint)
       type(joint_search_t), intent(in) :: search
-      integer, intent(in) :: material(2)  !! Numbers of the materials: (2)
+      type(block_system_t), intent(in) :: system
+      type(joint_t), intent(in) :: joint
 
-      law_between = material(1) + size(search%law, 1)*(material(2) - 1)
-   end function law_between
+      if (allocated(search%edge_law)) then
+         law_of = search%edge_law(joint%contact(1)%edge)
+      else
+         law_of = system%material(joint%block(1)) &
+            & + size(search%law, 1)*(system%material(joint%block(2)) - 1)
+      end if
+   end function law_of
 
    !> Joints of blocks that touch in the reference shape: the gap is at most a share of the size of
    !> the smallest of the two blocks and those between them
@@ -346,7 +353,7 @@ contains
       end do
       call take_joints(list, joint)
       do j = 1, size(joint)
-         joint(j)%law = law_between(search, system%material(joint(j)%block))
+         joint(j)%law = law_of(search, system, joint(j))
       end do
    end subroutine find_joints
 

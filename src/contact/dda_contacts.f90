@@ -29,6 +29,8 @@ module dda_contacts
       type(outline_t) :: outline  !! Outline of the blocks
       !> Law of the joints between two materials: (n_material, n_material)
       type(joint_law_t), allocatable :: law(:, :)
+      !> Law of each edge, where joints have that of a line rather than of two materials: (n_vertex)
+      integer, allocatable :: edge_law(:)
       !> Gap within which blocks touch, over the size of the smaller one
       real(wp) :: tolerance = contact_tolerance
       type(edge_pairs_t) :: near  !! Stored pairs; the result does not depend on them

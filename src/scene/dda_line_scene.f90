@@ -4,6 +4,8 @@ module dda_line_scene
    use dda_bar, only : bar_t
    use dda_block_system, only : block_system_t, new_block_system
    use dda_boundary, only : boundary_t, constant_history, history_t
+   use dda_contact_search, only : new_joint_search
+   use dda_contact_transfer, only : search_contacts
    use dda_contacts, only : find_contacts
    use dda_cut_model, only : bond_joint, cut_model_t, split_edges
    use dda_cutting, only : cut_blocks
@@ -16,6 +18,7 @@ module dda_line_scene
    use dda_limerick_analysis, only : limerick_joint_t
    use dda_line_model, only : entity_role
    use dda_material, only : joint_law_t, set_friction
+   use dda_outline, only : outline_t
    use dda_scene, only : scene_t
    implicit none
    private
@@ -49,30 +52,67 @@ contains
    pure subroutine line_scene(deck, scene)
       type(deck_t), intent(in) :: deck  !! The deck of a case, with its blocks; checked
       type(scene_t), intent(out) :: scene
+      logical :: held(size(deck%cut%area))
+
+      scene%origin = deck%cut%scale%origin
+      held = held_blocks(deck%cut)
+      scene%settings = settings_of(deck, pi/2.0_wp, count(.not. (held(deck%cut%pair%side(1)) &
+         & .and. held(deck%cut%pair%side(3)))))
+      allocate (scene%joint_angle_deg(0))
+      if (scene%settings%current .and. scene%settings%dynamic) then
+         call search_line_contacts(deck, scene)
+      else
+         call join_common_edges(deck, scene)
+      end if
+      scene%settings%boundary = deck%plan%boundary
+      if (size(deck%cut%bolt) == 0) return
+      scene%settings%boundary%bar = bars_of(deck)
+      allocate (scene%system%bar(size(deck%cut%bolt)))
+      scene%system%bar%force = scene%settings%boundary%bar%prestress
+   end subroutine line_scene
+
+   !> Joints of blocks that stay where they are drawn: edges that coincide, split where others end
+   pure subroutine join_common_edges(deck, scene)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(inout) :: scene  !! The scene; its blocks and contacts are set
       type(cut_model_t) :: split
       type(joint_law_t), allocatable :: law(:)
       integer, allocatable :: edge_pair(:, :)
       integer :: j, n
 
-      scene%origin = deck%cut%scale%origin
       call split_edges(deck%cut, split)
       call line_system(deck, split, scene%system)
       split%pair = pack(split%pair, scene%system%equation(split%pair%side(1)) > 0 &
          & .or. scene%system%equation(split%pair%side(3)) > 0)
       n = size(split%pair)
-      scene%settings = settings_of(deck, pi/2.0_wp, n)
-      allocate (law(n), edge_pair(4, n), scene%joint_angle_deg(0))
+      allocate (law(n), edge_pair(4, n))
       do j = 1, n
          law(j) = law_of_joint(deck, split%pair(j)%joint)
          edge_pair(:, j) = split%pair(j)%side
       end do
       call find_contacts(scene%system, edge_pair, law, scene%contacts)
-      scene%settings%boundary = deck%plan%boundary
-      if (size(split%bolt) == 0) return
-      scene%settings%boundary%bar = bars_of(deck, split)
-      allocate (scene%system%bar(size(split%bolt)))
-      scene%system%bar%force = scene%settings%boundary%bar%prestress
-   end subroutine line_scene
+   end subroutine join_common_edges
+
+   !> Contacts of blocks that move: those that a search finds, with the laws of their lines
+   pure subroutine search_line_contacts(deck, scene)
+      type(deck_t), intent(in) :: deck
+      type(scene_t), intent(inout) :: scene  !! The scene; its blocks and contacts are set
+      type(joint_law_t) :: law(bond_joint:maxval(deck%cut%edge_joint), 1)
+      integer :: j
+
+      call line_system(deck, deck%cut, scene%system)
+      do j = bond_joint, ubound(law, 1)
+         law(j, 1) = law_of_joint(deck, j)
+      end do
+      associate (contacts => scene%contacts)
+         contacts%searched = .true.
+         contacts%search = new_joint_search(scene%system, law)
+         contacts%search%edge_law = deck%cut%edge_joint - bond_joint + 1
+         call search_contacts(scene%system, contacts)
+         ! a run makes the outline again
+         contacts%search%outline = outline_t()
+      end associate
+   end subroutine search_line_contacts
 
    !> Restraints, loads and monitoring points of the files
    pure subroutine points_of_lines(deck, fixed, boundary)
@@ -121,16 +161,15 @@ contains
    end function force_of
 
    !> Bolts as bars. In older files the stiffness is that of a bar of unit length
-   pure function bars_of(deck, cut) result(bar)
+   pure function bars_of(deck) result(bar)
       type(deck_t), intent(in) :: deck
-      type(cut_model_t), intent(in) :: cut
       type(bar_t), allocatable :: bar(:)  !! The bars: (n)
       real(wp) :: property(3), length
       integer :: i
 
-      allocate (bar(size(cut%bolt)))
+      allocate (bar(size(deck%cut%bolt)))
       do i = 1, size(bar)
-         associate (bolt => cut%bolt(i))
+         associate (bolt => deck%cut%bolt(i))
             property = bolt%property
             if (property(1) < 0.0_wp) then
                property = [0.0_wp, 0.0_wp, 0.0_wp]

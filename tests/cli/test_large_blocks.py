@@ -195,6 +195,30 @@ def test_a_tunnel_stands_by_its_bolts_in_time(tmp_path: Path) -> None:
     assert max(bar_forces(tmp_path)) > 1e3
 
 
+def test_a_roof_that_falls_comes_to_lie_on_the_floor_of_its_tunnel(tmp_path: Path) -> None:
+    """Blocks of lines in time meet others than those that they are drawn beside."""
+    (tmp_path / "map.nml").write_text(
+        "&opening shape = 'horseshoe', width = 2, wall = 1, y = -1, sides = 6 /\n&lines seed = 3 /\n"
+        "&outline left = -3, right = 3, bottom = -3, top = 2.5, fixed = 'left', 'right', 'bottom' /\n"
+        "&joint_set dip_deg = 0, spacing = 1 /\n&joint_set dip_deg = 90, spacing = 1 /\n")
+    (tmp_path / "t.nml").write_text(
+        "&scene kind = 'lines', geometry = 't.geo' /\n&joint friction_deg = 5 /\n"
+        "&analysis mode = 'dynamic', geometry = 'current', time_step = 5e-3, duration = 1, unknowns = 3 /\n"
+        "&output frames = 1 /\n")
+    assert run_dda("lines", "map.nml", "--out", "t.geo", cwd=tmp_path).returncode == 0
+    assert run_dda("run", "t.nml", "--out", "out", cwd=tmp_path).returncode == 0
+    assert rows_of(tmp_path / "out" / "results.csv")[0]["verdict"] == "completed"
+    low: list[dict[str, float]] = [{}, {}]
+    for row in rows_of(tmp_path / "out" / "frames.csv"):
+        corners = low[int(row["frame"])]
+        corners[row["block"]] = min(corners.get(row["block"], math.inf), float(row["y"]))
+    roof = [block for block, y in low[0].items() if y > 0.7]
+    fallen = [low[1][block] for block in roof if low[1][block] < low[0][block] - 0.5]
+    # without friction it falls 2 m in 0.64 s; the hit floor gives by 5 mm
+    assert len(fallen) >= 2
+    assert min(fallen) == pytest.approx(-1.0, abs=0.01)
+
+
 def test_a_tunnel_of_many_blocks_begins_to_move_with_its_bolts(tmp_path: Path) -> None:
     """2001 rigid blocks: less moves than a fiftieth of them in free fall, for only the roof has no support."""
     maps = (
