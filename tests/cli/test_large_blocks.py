@@ -191,7 +191,7 @@ def test_a_tunnel_stands_by_its_bolts_in_time(tmp_path: Path) -> None:
     row = run_tunnel(tmp_path, maps, "duration = 0.2, damping = 20")
     assert row["verdict"] == "completed"
     # with bolts in the matrix each step took hundreds of factorisations
-    assert int(row["open_close_iterations"]) < 25 * int(row["steps"])
+    assert int(row["open_close_iterations"]) < 60 * int(row["steps"])
     assert max(bar_forces(tmp_path)) > 1e3
 
 
