@@ -11,9 +11,9 @@ module dda_line_scene
    use dda_cutting, only : cut_blocks
    use dda_deck, only : deck_error, deck_t
    use dda_error, only : error_t
-   use dda_key_names, only : analysis_mode, joint_cohesion, joint_friction_deg, joint_tension, &
-      & load_gravity, material_density, material_plane, material_poisson, material_unit_weight, &
-      & material_young, scene_geometry
+   use dda_key_names, only : analysis_geometry, analysis_mode, joint_cohesion, &
+      & joint_friction_deg, joint_tension, load_gravity, material_density, material_plane, &
+      & material_poisson, material_unit_weight, material_young, scene_geometry
    use dda_kinds, only : pi, wp
    use dda_limerick_analysis, only : limerick_joint_t
    use dda_line_model, only : entity_role
@@ -192,15 +192,18 @@ contains
       type(error_t), allocatable, intent(out) :: error  !! Allocated for an unsupported item
       type(block_system_t) :: system
       character(len=:), allocatable :: problem
+      logical :: searches
 
       problem = ""
+      searches = deck%value(analysis_mode)%text == "dynamic" &
+         & .and. deck%value(analysis_geometry)%text == "current"
       call line_system(deck, deck%cut, system)
       if (all(system%equation == 0)) then
          problem = "expected a block that can move, got only fixed ones; remove fixed points"
-      else if (.not. any(system%equation(deck%cut%pair%side(1)) > 0 &
-         & .or. system%equation(deck%cut%pair%side(3)) > 0)) then
-         problem = "expected coincident edges of blocks, got none: this version finds no other " &
-            & //"contacts; choose mode = 'limerick'"
+      else if (.not. (searches .or. any(system%equation(deck%cut%pair%side(1)) > 0 &
+         & .or. system%equation(deck%cut%pair%side(3)) > 0))) then
+         problem = "expected coincident edges of blocks, got none: other contacts occur in " &
+            & //"time alone; choose mode = 'dynamic', geometry = 'current', or mode = 'limerick'"
       else if (deck%value(analysis_mode)%text == "static" &
          & .and. .not. any(system%unit_weight > 0.0_wp .and. system%equation > 0)) then
          problem = "a static analysis needs a weight on blocks that move, got none; give one"

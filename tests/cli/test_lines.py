@@ -103,6 +103,17 @@ def test_what_cannot_be_run_is_checked_and_refused(tmp_path: Path, fixed: str, l
     assert wanted in done.stderr
 
 
+def test_a_block_without_joints_falls_in_time(tmp_path: Path) -> None:
+    lines = SQUARE.splitlines(True)
+    lines[4] = "0\n"
+    (tmp_path / "a.geo").write_text("".join(lines))
+    (tmp_path / "a.nml").write_text("&scene kind='lines', geometry='a.geo' /\n&analysis mode='dynamic', "
+                                    "geometry='current', time_step=0.01, duration=0.1, unknowns=3 /\n")
+    assert run_dda("run", "a.nml", cwd=tmp_path).returncode == 0
+    assert rows_of(tmp_path / "a" / "results.csv")[0]["verdict"] == "completed"
+    assert float(rows_of(tmp_path / "a" / "blocks.csv")[0]["v"]) == pytest.approx(-9.81 * 0.1**2 / 2.0)
+
+
 @pytest.mark.parametrize(
     ("deck", "wanted"),
     [
