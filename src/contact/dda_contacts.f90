@@ -258,6 +258,7 @@ contains
       real(wp) :: gap(3)
       integer :: j
 
+      if (.not. allocated(contacts%place)) allocate (contacts%place(size(contacts%joint)))
       do j = 1, size(contacts%joint)
          associate (joint => contacts%joint(j))
             if (.not. contacts%remember) &

@@ -3,6 +3,7 @@ module dda_step_at_rest
    use dda_assembly, only : renew_springs
    use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_update, only : carry_over, displaced
+   use dda_contacts, only : joint_search_t
    use dda_energy, only : audit_step
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
@@ -86,7 +87,8 @@ contains
       run%march%held_force = run%equations%fixed%force
       before = run%run_state_t
       ! they follow with the places of contacts in the next step
-      deallocate (before%contacts%springs%row)
+      deallocate (before%contacts%springs%row, before%contacts%place)
+      before%contacts%search = joint_search_t()
       call take_speed(run, still)
       if (still) call balance_forces(run, still)
       run%step%state%fineness = 1.0_wp
@@ -95,6 +97,7 @@ contains
       if (still) call count_work(before%system%motion, run)
       if (still) return
       call renew_springs(run%contacts%springs%equation, before%contacts%springs, run%equations)
+      before%contacts%search = run%contacts%search
       run%run_state_t = before
       run%equations%fixed%force = before%march%held_force
    end subroutine come_to_rest
