@@ -20,7 +20,7 @@ module dda_contact_problem
    private
 
    public :: contact_problem_t, pose_contacts, openings, move_blocks, residual_of, residual_t
-   public :: admissible, speed_of
+   public :: admissible, answers, speed_of
 
    !> Joints and blocks of a group; the blocks are numbered as they come here. The parent's gaps and
    !> compliance are those of an interior point about given forces
@@ -37,8 +37,6 @@ module dda_contact_problem
       type(cone_t), allocatable :: cone(:)
       !> Cholesky factor of the matrix of each block: (n_dof, n_dof, n_block)
       real(wp), allocatable :: lower(:, :, :)
-      !> Motion of the two blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
-      real(wp), allocatable :: answer(:, :, :, :)
       !> Openings and slip by a unit of each of the joint's own forces: (3, 3, n_joint) [m/(N/m)]
       real(wp), allocatable :: give(:, :, :)
       !> Gap that rounding can make: it asks for no force, which could grow without end [m]
@@ -94,7 +92,7 @@ contains
          p%bar_give = springs%soft(:, joint)
          p%apart = p%apart - p%bar_give*springs%rest(:, joint)
       end if
-      call see_answers(p)
+      call see_blocks(p)
    end subroutine pose_contacts
 
    !> Number the blocks of the joints as these come
@@ -121,61 +119,84 @@ contains
       p%equation = equation(:e)
    end subroutine number_blocks
 
-   !> Compliance of the blocks at the joints
-   pure subroutine see_answers(p)
+   !> Factors of the blocks' matrices, and compliance of the blocks at the joints
+   pure subroutine see_blocks(p)
       type(contact_problem_t), intent(inout) :: p
-      real(wp) :: unit(size(p%base, 1)), inverse(size(unit), size(unit), size(p%equation))
+      real(wp), allocatable :: answer(:, :, :, :)
       integer :: b, i, k, side
 
       allocate (p%lower, mold=p%base)
       do b = 1, size(p%equation)
          p%lower(:, :, b) = cholesky(p%base(:, :, b))
+      end do
+      allocate (answer, source=answers(p))
+      allocate (p%give(3, 3, size(p%joint)), source=0.0_wp)
+      do i = 1, size(p%joint)
+         do k = 1, 3
+            p%give(k, k, i) = p%bar_give(k, i)
+         end do
+         do side = 1, 2
+            if (p%block(side, i) > 0) call add_give(size(answer, 1), p%row(:, :, side, i), &
+               & answer(:, :, side, i), p%give(:, :, i))
+         end do
+      end do
+   end subroutine see_blocks
+
+   !> Motion of the two blocks of each joint by a unit of each force
+   pure function answers(p) result(answer)
+      type(contact_problem_t), intent(in) :: p
+      !> The motion, 0 of what is fixed: (n_dof, 3, 2, n_joint) [m/(N/m)]
+      real(wp) :: answer(size(p%base, 1), 3, 2, size(p%joint))
+      real(wp) :: unit(size(p%base, 1)), inverse(size(unit), size(unit), size(p%equation))
+      integer :: b, i, k, side
+
+      do b = 1, size(p%equation)
          do k = 1, size(unit)
             unit = 0.0_wp
             unit(k) = 1.0_wp
             inverse(:, k, b) = solved(p%lower(:, :, b), unit)
          end do
       end do
-      allocate (p%answer, mold=p%row)
-      allocate (p%give(3, 3, size(p%joint)))
+      answer = 0.0_wp
       do i = 1, size(p%joint)
-         associate (give => p%give(:, :, i))
-            give = 0.0_wp
-            do k = 1, 3
-               give(k, k) = p%bar_give(k, i)
-            end do
-            do side = 1, 2
-               b = p%block(side, i)
-               if (b == 0) p%answer(:, :, side, i) = 0.0_wp
-               if (b == 0) cycle
-               call add_answer(size(unit), inverse(:, :, b), p%row(:, :, side, i), &
-                  & p%answer(:, :, side, i), give)
-            end do
-         end associate
+         do side = 1, 2
+            b = p%block(side, i)
+            if (b > 0) call add_answer(size(unit), inverse(:, :, b), p%row(:, :, side, i), &
+               & answer(:, :, side, i))
+         end do
       end do
-   end subroutine see_answers
+   end function answers
 
-   !> Compliance of one block at a joint
-   pure subroutine add_answer(n_dof, inverse, row, answer, give)
+   !> Motion of one block by a unit of each force
+   pure subroutine add_answer(n_dof, inverse, row, answer)
       integer, intent(in) :: n_dof                   !! Unknowns of a block
       real(wp), intent(in) :: inverse(n_dof, n_dof)  !! Inverse of its matrix
       real(wp), intent(in) :: row(n_dof, 3)          !! Rows of the joint for its unknowns
-      real(wp), intent(out) :: answer(n_dof, 3)      !! Its motion by a unit of each force
-      real(wp), intent(inout) :: give(3, 3)          !! Receives openings and slip by that motion
-      integer :: c, i, k
+      real(wp), intent(inout) :: answer(n_dof, 3)    !! Receives the motion
+      integer :: c, k
 
       do k = 1, 3
-         answer(:, k) = 0.0_wp
          do c = 1, n_dof
             answer(:, k) = answer(:, k) + inverse(:, c)*row(c, k)
          end do
+      end do
+   end subroutine add_answer
+
+   !> Compliance of one block at a joint
+   pure subroutine add_give(n_dof, row, answer, give)
+      integer, intent(in) :: n_dof
+      real(wp), intent(in) :: row(n_dof, 3), answer(n_dof, 3)
+      real(wp), intent(inout) :: give(3, 3)  !! Receives openings and slip by the block's motion
+      integer :: c, i, k
+
+      do k = 1, 3
          do i = 1, 3
             do c = 1, n_dof
                give(i, k) = give(i, k) + row(c, i)*answer(c, k)
             end do
          end do
       end do
-   end subroutine add_answer
+   end subroutine add_give
 
    !> Openings and slips by forces and the motion that they make
    pure function openings(p, force, motion)

@@ -4,7 +4,8 @@
 !> They converge to the forces of Coulomb's law without a factorisation: fast where the forces of
 !> the last step are near or blocks are few, slowly in tall stacks.
 module dda_contact_sweeps
-   use dda_contact_problem, only : contact_problem_t, move_blocks, residual_of, residual_t
+   use dda_contact_problem, only : answers, contact_problem_t, move_blocks, &
+      & residual_of, residual_t
    use dda_friction_cone, only : cone_kind, shear_bound
    use dda_joint_answer, only : answer_joint, joint_view_t
    use dda_kinds, only : wp
@@ -38,10 +39,12 @@ contains
       type(residual_t), intent(inout) :: residual  !! Residual of the forces
       type(sweeps_t) :: sweeps, before, way
       type(residual_t) :: now
+      real(wp), allocatable :: answer(:, :, :, :)
       real(wp) :: last, square
       integer :: k
 
       if (residual%opening <= tolerance) return
+      allocate (answer, source=answers(p))
       sweeps%force = force
       allocate (sweeps%motion(size(p%load, 1), 0:size(p%load, 2)))
       sweeps%motion(:, 0) = 0.0_wp
@@ -52,7 +55,7 @@ contains
       do k = 1, most
          before%force = sweeps%force
          before%motion = sweeps%motion
-         call sweep(p, modulo(k, 2) == 1, sweeps)
+         call sweep(p, answer, modulo(k, 2) == 1, sweeps)
          square = square_of(p, sweeps%force - before%force)
          if (modulo(k, round) == 0 .or. k == most .or. .not. square > 0.0_wp) then
             now = residual_of(p, sweeps%force, sweeps%motion(:, 1:))
@@ -124,8 +127,10 @@ contains
    end subroutine follow
 
    !> One sweep over the joints, forwards or backwards
-   pure subroutine sweep(p, forwards, sweeps)
+   pure subroutine sweep(p, answer, forwards, sweeps)
       type(contact_problem_t), intent(in) :: p
+      !> Motion of the blocks by a unit of each force: (n_dof, 3, 2, n_joint) [m/(N/m)]
+      real(wp), intent(in), contiguous :: answer(:, :, :, :)
       logical, intent(in) :: forwards  !! True if forwards
       type(sweeps_t), intent(inout) :: sweeps
       integer :: i, k, n
@@ -133,15 +138,18 @@ contains
       n = size(p%joint)
       do k = 1, n
          i = merge(k, n + 1 - k, forwards)
-         call relax(size(p%load, 1), p, i, sweeps%slip(i), sweeps%force(:, i), sweeps%motion)
+         call relax(size(p%load, 1), p, i, answer(:, :, :, i), sweeps%slip(i), &
+            & sweeps%force(:, i), sweeps%motion)
       end do
    end subroutine sweep
 
    !> Let one joint take the forces that the law of contact asks for
-   pure subroutine relax(n_dof, p, i, slip, force, motion)
+   pure subroutine relax(n_dof, p, i, answer, slip, force, motion)
       integer, intent(in) :: n_dof            !! Unknowns of one block
       type(contact_problem_t), intent(in) :: p
       integer, intent(in) :: i                !! Number of the joint
+      !> Motion of its blocks by a unit of each force: (n_dof, 3, 2) [m/(N/m)]
+      real(wp), intent(in) :: answer(n_dof, 3, 2)
       integer, intent(inout) :: slip          !! Direction that it slid in
       real(wp), intent(inout) :: force(3)     !! Its forces: (3) [N/m]
       !> Motion of the blocks: (n_dof, 0:n_block) [m]
@@ -173,8 +181,8 @@ contains
          end if
          if (.not. solved) call project_forces(p, i, opening, force)
       end associate
-      call push(n_dof, p%answer(:, :, 1, i), force - before, motion(:, a))
-      call push(n_dof, p%answer(:, :, 2, i), force - before, motion(:, b))
+      call push(n_dof, answer(:, :, 1), force - before, motion(:, a))
+      call push(n_dof, answer(:, :, 2), force - before, motion(:, b))
    end subroutine relax
 
    !> Let the forces of a joint take one after the other what each asks for
