@@ -164,7 +164,7 @@ contains
       type(run_t), intent(inout) :: run
 
       if (run%contacts%searched) call next_reach(run%system, run%step, run%march)
-      call measure_step(run)
+      if (.not. run%settings%dynamic) call measure_step(run)
       if (in_time(run)) then
          call note_residual(run)
          call note_reduction(run)

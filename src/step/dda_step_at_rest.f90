@@ -65,7 +65,6 @@ contains
          step%held_mean_force = run%equations%fixed%force
          step%impact = 0.0_wp
          step%farthest = 0.0_wp
-         step%acceleration = 0.0_wp
          step%whole = .true.
          step%accepted = .true.
          step%was_cut = .false.

@@ -213,14 +213,14 @@ contains
          & still_moves_away = march%progress > march%early_progress + growth
    end function still_moves_away
 
-   !> Energies and acceleration of a settled step, before it is carried over
+   !> Energies and acceleration of a settled static step, before it is carried over
    pure subroutine measure_step(run)
       type(run_t), intent(inout) :: run
       real(wp) :: bar(2)
       integer :: b, e
 
       call measure_balance(run%system, run%contacts%springs, run%equations, run%step)
-      if (.not. run%settings%dynamic) call measure_way_to_rest(run%equations, run%step)
+      call measure_way_to_rest(run%equations, run%step)
       associate (system => run%system, equations => run%equations, step => run%step, &
          & motion => run%step%state%motion)
          bar = bar_energies(equations%bars, motion)
