@@ -15,7 +15,7 @@ module dda_assembly
    use dda_sort, only : list_by_owner
    use dda_spring_products, only : add_load, add_product, projected
    use dda_step_state, only : equations_t
-   use dda_submatrices, only : body_load, dashpot_matrices, elastic_matrix, mass_matrix
+   use dda_submatrices, only : body_load, dashpot_matrices, mass_matrix
    implicit none
    private
 
@@ -23,7 +23,7 @@ module dda_assembly
 
 contains
 
-   !> Equations of a system at rest: mass, stiffness and weight. Pattern and factor follow with the
+   !> Equations of a system at rest: mass and weight. Pattern and factor follow with the
    !> first solution for given faces; dynamic runs with current geometry need none
    pure subroutine new_equations(system, settings, equations)
       type(block_system_t), intent(in) :: system
@@ -35,7 +35,7 @@ contains
 
       nd = settings%n_dof
       n = maxval(system%equation)
-      allocate (equations%mass(nd, nd, n), equations%elastic(nd, nd, n))
+      allocate (equations%mass(nd, nd, n))
       allocate (equations%base(nd, nd, n), source=0.0_wp)
       allocate (equations%weight(nd, n), equations%outer(nd, n), equations%load(nd, n))
       allocate (equations%felt(nd, n))
@@ -48,8 +48,6 @@ contains
          if (e == 0) cycle
          full = mass_matrix(system%density(b), system%area(b), system%second(:, b))
          equations%mass(:, :, e) = full(:nd, :nd)
-         full = elastic_matrix(system%materials(system%material(b)), system%area(b))
-         equations%elastic(:, :, e) = full(:nd, :nd)
          load = body_load(system%unit_weight(b)*load_direction(settings), system%area(b))
          equations%weight(:, e) = load(:nd)
       end do

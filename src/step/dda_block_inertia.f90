@@ -4,7 +4,7 @@ module dda_block_inertia
    use dda_block_system, only : block_system_t
    use dda_deformation, only : turned_tensor
    use dda_step_state, only : equations_t
-   use dda_submatrices, only : mass_matrix, stress_load
+   use dda_submatrices, only : elastic_matrix, mass_matrix, stress_load
    use dda_fixed_points, only : add_fixed_springs, follow_fixed_points, hold_rigidly
    use dda_kinds, only : wp
    use dda_outer_loads, only : outer_loads
@@ -32,14 +32,20 @@ contains
       !> left out [s]
       real(wp), intent(in), optional :: time
       real(wp) :: before(size(equations%base, 1), size(equations%base, 2), size(equations%base, 3))
-      real(wp) :: finish, start, damping
-      integer :: e
+      real(wp) :: finish, start, damping, full(6, 6)
+      integer :: b, e
 
       before = equations%base
       start = 0.0_wp
       if (present(time)) start = time
       damping = damping_rate(settings, dt)
-      equations%base = equations%elastic + (2.0_wp/dt**2 + damping/dt)*equations%mass
+      do b = 1, size(system%equation)
+         e = system%equation(b)
+         if (e == 0) cycle
+         full = elastic_matrix(system%materials(system%material(b)), system%area(b))
+         equations%base(:, :, e) = full(:settings%n_dof, :settings%n_dof) &
+            & + (2.0_wp/dt**2 + damping/dt)*equations%mass(:, :, e)
+      end do
       if (settings%dynamic .and. size(equations%dashpot) > 0) &
          & equations%base = equations%base + equations%dashpot/dt
       call outer_loads(system, settings, start, dt, equations%weight, equations%outer, &

@@ -65,8 +65,6 @@ module dda_step_state
       real(wp), allocatable :: glued(:, :, :)
       !> Mass: (n_dof, n_dof, n_equation)
       real(wp), allocatable :: mass(:, :, :)
-      !> Elastic stiffness of the blocks: (n_dof, n_dof, n_equation)
-      real(wp), allocatable :: elastic(:, :, :)
       !> Forces of absorbing faces per rate, without entries if there are none:
       !> (n_dof, n_dof, n_equation or 0)
       real(wp), allocatable :: dashpot(:, :, :)

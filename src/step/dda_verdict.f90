@@ -18,6 +18,7 @@ module dda_verdict
    use dda_settings, only : settings_t, verdict
    use dda_step_context, only : march_t, contact_note_t, run_t, step_context_t
    use dda_step_interval, only : longest_motion
+   use dda_submatrices, only : elastic_matrix
    implicit none
    private
 
@@ -216,7 +217,7 @@ contains
    !> Energies and acceleration of a settled static step, before it is carried over
    pure subroutine measure_step(run)
       type(run_t), intent(inout) :: run
-      real(wp) :: bar(2)
+      real(wp) :: bar(2), full(6, 6)
       integer :: b, e
 
       call measure_balance(run%system, run%contacts%springs, run%equations, run%step)
@@ -231,9 +232,10 @@ contains
          if (size(motion, 1) < 6) return
          do b = 1, size(system%equation)
             e = system%equation(b)
-            if (e > 0) step%stored = step%stored + dot_product(motion(4:6, e), &
-               & matmul(equations%elastic(4:6, 4:6, e), motion(4:6, e))/2.0_wp &
-               & + system%area(b)*system%stress(:, b))
+            if (e == 0) cycle
+            full = elastic_matrix(system%materials(system%material(b)), system%area(b))
+            step%stored = step%stored + dot_product(motion(4:6, e), matmul(full(4:6, 4:6), &
+               & motion(4:6, e))/2.0_wp + system%area(b)*system%stress(:, b))
          end do
       end associate
    end subroutine measure_step
