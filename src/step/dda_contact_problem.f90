@@ -20,7 +20,7 @@ module dda_contact_problem
    private
 
    public :: contact_problem_t, pose_contacts, openings, move_blocks, residual_of, residual_t
-   public :: admissible, answers, speed_of
+   public :: admissible, find_answers, speed_of
 
    !> Joints and blocks of a group; the blocks are numbered as they come here. The parent's gaps and
    !> compliance are those of an interior point about given forces
@@ -129,7 +129,7 @@ contains
       do b = 1, size(p%equation)
          p%lower(:, :, b) = cholesky(p%base(:, :, b))
       end do
-      allocate (answer, source=answers(p))
+      call find_answers(p, answer)
       allocate (p%give(3, 3, size(p%joint)), source=0.0_wp)
       do i = 1, size(p%joint)
          do k = 1, 3
@@ -143,10 +143,10 @@ contains
    end subroutine see_blocks
 
    !> Motion of the two blocks of each joint by a unit of each force
-   pure function answers(p) result(answer)
+   pure subroutine find_answers(p, answer)
       type(contact_problem_t), intent(in) :: p
       !> The motion, 0 of what is fixed: (n_dof, 3, 2, n_joint) [m/(N/m)]
-      real(wp) :: answer(size(p%base, 1), 3, 2, size(p%joint))
+      real(wp), allocatable, intent(out) :: answer(:, :, :, :)
       real(wp) :: unit(size(p%base, 1)), inverse(size(unit), size(unit), size(p%equation))
       integer :: b, i, k, side
 
@@ -157,7 +157,7 @@ contains
             inverse(:, k, b) = solved(p%lower(:, :, b), unit)
          end do
       end do
-      answer = 0.0_wp
+      allocate (answer(size(unit), 3, 2, size(p%joint)), source=0.0_wp)
       do i = 1, size(p%joint)
          do side = 1, 2
             b = p%block(side, i)
@@ -165,7 +165,7 @@ contains
                & answer(:, :, side, i))
          end do
       end do
-   end function answers
+   end subroutine find_answers
 
    !> Motion of one block by a unit of each force
    pure subroutine add_answer(n_dof, inverse, row, answer)

@@ -4,7 +4,7 @@
 !> They converge to the forces of Coulomb's law without a factorisation: fast where the forces of
 !> the last step are near or blocks are few, slowly in tall stacks.
 module dda_contact_sweeps
-   use dda_contact_problem, only : answers, contact_problem_t, move_blocks, &
+   use dda_contact_problem, only : contact_problem_t, find_answers, move_blocks, &
       & residual_of, residual_t
    use dda_friction_cone, only : cone_kind, shear_bound
    use dda_joint_answer, only : answer_joint, joint_view_t
@@ -44,7 +44,7 @@ contains
       integer :: k
 
       if (residual%opening <= tolerance) return
-      allocate (answer, source=answers(p))
+      call find_answers(p, answer)
       sweeps%force = force
       allocate (sweeps%motion(size(p%load, 1), 0:size(p%load, 2)))
       sweeps%motion(:, 0) = 0.0_wp
