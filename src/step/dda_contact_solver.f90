@@ -25,25 +25,25 @@ module dda_contact_solver
    implicit none
    private
 
-   public :: group_joints, hold_work, max_energy_gain, motion_tolerance, settle_contacts
+   public :: gap_tolerance, relative_tolerance, rounding_tolerance
+   public :: group_joints, hold_work, max_energy_gain, settle_contacts
 
-   !> Gap tolerance over the free fall of the longest step
+   !> Gap tolerance over the free fall of the longest step: what forces leave of speeds, likewise
    real(wp), parameter :: gap_tolerance = 1.0e-7_wp
-   !> Gap tolerance over the fastest motion of the group, where nothing falls
-   real(wp), parameter :: motion_tolerance = 1.0e-9_wp
+   !> Tolerance of gaps over the fastest motion of the group, where nothing falls, of accelerations
+   !> at rest over that of free fall, and of a shear force that slides over its bound
+   real(wp), parameter :: relative_tolerance = 1.0e-9_wp
    !> Tolerance of the interior point over the fastest motion of the group
    real(wp), parameter :: interior_tolerance = 1.0e-5_wp
    !> Joints up to which a group is solved to round-off
    integer, parameter :: small_group_joints = 100
-   !> Gap tolerance of small groups over that of large ones
+   !> Gap tolerance of small groups over that of large ones, and of a test of rest over the usual
+   !> one
    real(wp), parameter :: rounding_tolerance = 1.0e-6_wp
    !> Sweeps before the first factorisation, and after it
    integer, parameter :: first_sweeps = 32, last_sweeps = 64
-   !> Least factor by which residual gaps reduce forces; less is due to depths that are pushed out
-   real(wp), parameter :: least_factor = 1.0_wp - 1.0e-6_wp
-   !> Relative distance from its bound at which a shear force counts as sliding
-   real(wp), parameter :: bound_tolerance = 1.0e-9_wp
-   !> Energy that contact forces may add, over that of motion and loads
+   !> Energy that contact forces may add, over that of motion and loads, and most by which residual
+   !> gaps reduce forces; more is due to depths that are pushed out
    real(wp), parameter :: max_energy_gain = 1.0e-6_wp
    !> Residual at which faces may start, and tolerance of the convex problem, over the fastest
    !> motion of the group
@@ -109,7 +109,7 @@ contains
       before = force
       residual = residual_of(p, force, move_blocks(p, force))
       speed = speed_of(p, move_blocks(p, 0.0_wp*force))
-      tolerance = max(p%noise, fineness*max(gap_tolerance*fall, motion_tolerance*speed))
+      tolerance = max(p%noise, fineness*max(gap_tolerance*fall, relative_tolerance*speed))
       enough = max(tolerance, interior_tolerance*speed)
       near = near_solution*speed
       exact = merge(rounding_tolerance, 1.0_wp, size(p%joint) <= small_group_joints)*tolerance
@@ -151,7 +151,7 @@ contains
       by_contacts = sum(contact*(openings(p, force, move_blocks(p, force)) - p%apart)) - by_loads
       if (by_loads + by_contacts <= 0.0_wp) return
       factor = -by_loads/by_contacts
-      if (factor < least_factor) return
+      if (factor < 1.0_wp - max_energy_gain) return
       force = without + factor*contact
       residual = residual_of(p, force, move_blocks(p, force))
    end subroutine hold_work
@@ -179,7 +179,7 @@ contains
       do j = 1, size(cone)
          associate (face => faces(j), f => force(:, j))
             face%open = .not. f(1:2) + shift(1:2, j) > 0.0_wp
-            if (abs(f(3)) >= (1.0_wp - bound_tolerance)*shear_bound(cone(j), f + shift(:, j))) &
+            if (abs(f(3)) >= (1.0_wp - relative_tolerance)*shear_bound(cone(j), f + shift(:, j))) &
                & face%slip = merge(1, -1, f(3) > 0.0_wp)
             if (all(face%open) .and. .not. abs(f(3)) > 0.0_wp) face%slip = 0
          end associate

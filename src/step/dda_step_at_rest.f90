@@ -4,6 +4,7 @@ module dda_step_at_rest
    use dda_block_inertia, only : assemble_blocks, packed_velocity
    use dda_block_update, only : carry_over, displaced
    use dda_contacts, only : joint_search_t
+   use dda_contact_solver, only : gap_tolerance, relative_tolerance, rounding_tolerance
    use dda_energy, only : audit_step
    use dda_kinds, only : wp
    use dda_multipliers, only : settle_joints
@@ -23,15 +24,8 @@ module dda_step_at_rest
    !> Maximum number of steps and solutions of a test of rest
    integer, parameter :: most_steps = 4, most_solutions = 16
 
-   !> Gap tolerance of a test of rest over the usual one
-   real(wp), parameter :: of_try = 1.0e-6_wp
-
    !> Speed of a slow block over that of free fall per step
    real(wp), parameter :: slow = 1.0e-3_wp
-   !> Speed at rest over that of free fall per step
-   real(wp), parameter :: no_speed = 1.0e-7_wp
-   !> Acceleration at rest over that of free fall
-   real(wp), parameter :: balanced = 1.0e-9_wp
 
 contains
 
@@ -130,7 +124,7 @@ contains
       do i = 1, most_steps
          call predict_step(run)
          call place_contacts(run)
-         run%step%state%fineness = of_try
+         run%step%state%fineness = rounding_tolerance
          call assemble_step(run)
          call solve_contacts(run)
          if (.not. run%step%state%settled) return
@@ -155,7 +149,7 @@ contains
          ! rounding of gaps then moves blocks less than forces that are not balanced
          step%dt = run%march%dt
          if (run%march%free_acceleration > 0.0_wp) step%dt = max(step%dt, sqrt(8.0_wp &
-            & *run%equations%gap_noise/(balanced*run%march%free_acceleration)))
+            & *run%equations%gap_noise/(relative_tolerance*run%march%free_acceleration)))
          do i = 1, most_solutions
             where (abs(contacts%force(1:2, :)) > 0.0_wp) contacts%gap(1:2, :) = 0.0_wp
             call begin_step(run)
@@ -185,7 +179,7 @@ contains
       integer :: e
 
       is_slow = .false.
-      least = merge(no_speed, slow, finer)*run%march%free_acceleration*run%march%dt
+      least = merge(gap_tolerance, slow, finer)*run%march%free_acceleration*run%march%dt
       associate (mass => run%equations%mass)
          do e = 1, size(velocity, 2)
             if (dot_product(velocity(:, e), matmul(mass(:, :, e), velocity(:, e))) &
@@ -213,7 +207,7 @@ contains
          call add_forces(contacts%springs, contacts%force, left)
          do e = 1, size(left, 2)
             do i = 1, size(left, 1)
-               if (abs(left(i, e)) > balanced*run%march%free_acceleration &
+               if (abs(left(i, e)) > relative_tolerance*run%march%free_acceleration &
                   & *sqrt(mass(1, 1, e)*mass(i, i, e))) return
             end do
          end do

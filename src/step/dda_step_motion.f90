@@ -5,7 +5,7 @@ module dda_step_motion
    use dda_block_update, only : worn
    use dda_contact_types, only : mohr_coulomb
    use dda_contact_transfer, only : renew_contacts
-   use dda_contact_solver, only : motion_tolerance
+   use dda_contact_solver, only : relative_tolerance
    use dda_contacts, only : contacts_t, follow_contacts
    use dda_curved_motion, only : follow_curves, foresee_curves
    use dda_kinds, only : wp
@@ -39,7 +39,7 @@ contains
          step%renews = run%settings%current
          ! nothing is hit slower than weight or the tolerance of contact forces lets it close
          step%slowest_impact = max(2.0_wp*run%march%free_acceleration*run%march%longest, &
-            & motion_tolerance*largest_motion(run%system, &
+            & relative_tolerance*largest_motion(run%system, &
             & packed_velocity(run%system, run%settings%n_dof)))
          step%travel = 0.0_wp*run%system%vertex
          if (.not. run%settings%current) return
