@@ -11,12 +11,12 @@ module dda_balance
    private
 
    public :: free_acceleration, gyration, is_drowned, keep_moment, measure_balance
-   public :: measure_way_to_rest
+   public :: measure_way_to_rest, rounding
 
    !> Load or mass of a light block over the mean
    real(wp), parameter :: light = 1.0e-2_wp
-   !> Residual of the joint forces over the loads, with a margin of ten
-   real(wp), parameter :: left_over = 1.0e-12_wp
+   !> Rounding of sums of joint forces, and of energies, over their terms, with a margin of ten
+   real(wp), parameter :: rounding = 1.0e-12_wp
    !> Residual of the whole load over the load of a light block
    real(wp), parameter :: felt_share = 1.0e-3_wp
 
@@ -53,15 +53,15 @@ contains
       type(block_system_t), intent(in) :: system
       type(contacts_t), intent(in) :: contacts  !! The joints, placed, and their springs
       type(equations_t), intent(in) :: equations
-      real(wp) :: least, own(size(equations%felt, 2)), rounding
+      real(wp) :: least, own(size(equations%felt, 2)), pressed
       integer :: j, k, side
 
       is_drowned = .false.
       own = own_load(system, equations)
       do j = 1, size(contacts%joint)
-         rounding = 0.0_wp
+         pressed = 0.0_wp
          do k = 1, contacts%joint(j)%n_contact
-            rounding = max(rounding, dot_product(abs(contacts%place(j)%across(:, k)), &
+            pressed = max(pressed, dot_product(abs(contacts%place(j)%across(:, k)), &
                & abs(contacts%place(j)%point(:, k))))
          end do
          least = huge(least)
@@ -71,7 +71,7 @@ contains
             end associate
          end do
          is_drowned = is_drowned .or. least > 0.0_wp &
-            & .and. epsilon(rounding)*rounding*contacts%springs%stiffness(j) > noise*least
+            & .and. epsilon(pressed)*pressed*contacts%springs%stiffness(j) > noise*least
       end do
    end function is_drowned
 
@@ -108,7 +108,7 @@ contains
          end associate
          residue = equations%mass(1, 1, e)*acceleration
          if (own(e) <= light*mean) then
-            if (residue <= max(left_over*sum(around(1:2, e)), min(left_over*whole, &
+            if (residue <= max(rounding*sum(around(1:2, e)), min(rounding*whole, &
                & felt_share*own(e)))) cycle
          end if
          step%acceleration = max(step%acceleration, acceleration)

@@ -12,7 +12,7 @@
 !> whatever the step: v would end with any restitution between 0 and 1, and has never less energy.
 !> Without contact the two are the same. All of it is exact to the second order, impacts too.
 module dda_velocity
-   use dda_balance, only : keep_moment
+   use dda_balance, only : keep_moment, rounding
    use dda_block_inertia, only : damping_rate, drop_strain_rates, hold_energy, kinetic_energy, &
       & packed_velocity, strain_follows
    use dda_contact_solver, only : max_energy_gain
@@ -30,14 +30,11 @@ module dda_velocity
 
    public :: solve_impacts
 
-   !> Maximum number of reductions of restitution
-   integer, parameter :: max_tries = 10
-   !> Most impacts of one moment, each by what the one before has left
+   !> Most impacts of one moment, each by what the one before has left, and most reductions of
+   !> restitution in each
    integer, parameter :: max_impacts = 10
    !> Share of mixed velocities, and largest reduction of restitution
    real(wp), parameter :: least_less = 1.0e-7_wp, largest_less = 0.5_wp
-   !> Round-off of energy over that of motion
-   real(wp), parameter :: energy_noise = 1.0e-12_wp
 
    !> Conditions on velocities at the end of a step
    type :: impact_t
@@ -75,7 +72,7 @@ contains
       call see_impacts(run, impact)
       associate (step => run%step, equations => run%equations)
          before = impact%energy
-         allowed = before - sum(step%state%force*step%state%increment) + energy_noise*before
+         allowed = before - sum(step%state%force*step%state%increment) + rounding*before
          step%restitution = 1.0_wp
          step%fastest_impact = 0
          if (any(impact%part > 0.0_wp)) &
@@ -112,8 +109,8 @@ contains
 
       share = 0.0_wp
       associate (step => run%step)
-         do try = 0, max_tries
-            if (try == max_tries) step%restitution = 0.0_wp
+         do try = 0, max_impacts
+            if (try == max_impacts) step%restitution = 0.0_wp
             call solve_rates(run, impact, step%restitution)
             if (.not. step%has_velocity) return
             share = 0.0_wp
