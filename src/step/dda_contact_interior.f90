@@ -21,7 +21,7 @@ module dda_contact_interior
    implicit none
    private
 
-   public :: max_convex_iterations, share, solve_interior
+   public :: falling, max_convex_iterations, patience, share, solve_interior
 
    !> Compliance of the regularisation over that of the blocks
    real(wp), parameter :: compliance = 1.0e-6_wp

@@ -11,7 +11,7 @@ module dda_friction
    implicit none
    private
 
-   public :: iterate_friction
+   public :: iterate_friction, negligible
 
    !> Last points of a fixed-point iteration
    type :: anderson_t
@@ -27,7 +27,7 @@ module dda_friction
    integer, parameter :: max_stale = 25
    !> Number of corrections in the acceleration
    integer, parameter :: memory = 6
-   !> Difference below which changes are dependent, over the largest
+   !> Change of forces that is rounding over the largest, or over the sum of forces
    real(wp), parameter :: negligible = 1.0e-10_wp
 
 contains

@@ -7,10 +7,11 @@
 !> like a shear force that has no friction, else like a normal force.
 module dda_multipliers
    use dda_bar_springs, only : add_bars, bar_springs_t, judge_bars
-   use dda_contact_solver, only : settle_contacts
+   use dda_contact_interior, only : falling, patience
+   use dda_contact_solver, only : gap_tolerance, settle_contacts
    use dda_contact_types, only : joint_springs_t, unbounded
    use dda_fixed_points, only : correct_fixed_forces
-   use dda_friction, only : iterate_friction
+   use dda_friction, only : iterate_friction, negligible
    use dda_kinds, only : wp
    use dda_open_close, only : iterate_open_close
    use dda_settings, only : flow_rule, settings_t
@@ -22,14 +23,6 @@ module dda_multipliers
 
    !> Maximum number of multiplier iterations
    integer, parameter :: max_passes = 100
-   !> Change of a converged force over the sum of forces, and distance of a point from its target
-   !> over the motion of a step in time
-   real(wp), parameter :: fine = 1.0e-10_wp
-   !> Distance that a step in time accepts
-   real(wp), parameter :: coarse = 1.0e-7_wp
-   !> Least reduction of that distance per iteration
-   real(wp), parameter :: falling = 0.9_wp
-   integer, parameter :: patience = 5
    !> Maximum number of changes of bar states, and number with simultaneous changes
    integer, parameter :: max_bar_passes = 200, few_bar_passes = 20
 
@@ -92,7 +85,7 @@ contains
             & maxval(abs(state%force - force)))
          ! without loads the forces of restrained points alone bear on the blocks
          scale = equations%force_scale + sum(abs(equations%fixed%force))
-         if (change <= fine*scale) return
+         if (change <= negligible*scale) return
       end do
       state%settled = .false.
    end subroutine settle_exactly
@@ -139,16 +132,16 @@ contains
          call correct_fixed_forces(target, state%motion, equations%fixed, equations%load, change, &
             & miss)
          scale = max(state%fall, maxval(abs(state%motion(:2, :))))
-         if (miss <= fine*scale) return
+         if (miss <= negligible*scale) return
          ! what sweeps leave is no more to be corrected
-         if (miss <= coarse*scale .and. miss > last/2.0_wp) return
+         if (miss <= gap_tolerance*scale .and. miss > last/2.0_wp) return
          ! contacts may block a prescribed displacement
          stale = merge(0, stale + 1, miss < falling*least)
          if (stale == patience) exit
          least = min(least, miss)
       end do
       ! a point that rests misses its place by what contacts leave of theirs, which ends no run
-      state%settled = miss <= coarse*scale .or. .not. any(abs(equations%fixed%rate) > 0.0_wp)
+      state%settled = miss <= gap_tolerance*scale .or. .not. any(abs(equations%fixed%rate) > 0.0_wp)
    end subroutine settle_in_time
 
    !> Sweep the contacts, and in a motion with them the bars
