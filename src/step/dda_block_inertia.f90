@@ -16,9 +16,6 @@ module dda_block_inertia
    public :: assemble_blocks, damping_rate, drop_strain_rates, hold_energy, kinetic_energy
    public :: packed_velocity, strain_follows, turn_masses
 
-   !> Angle of strain oscillation per longest step above which strain follows its load [rad]
-   real(wp), parameter :: resolved = 1.0_wp
-
 contains
 
    !> Block part of matrix and load of one step of length dt. Forces that change with time are their
@@ -168,8 +165,8 @@ contains
       end do
    end function packed_velocity
 
-   !> Blocks whose strain follows their load, as a step does not resolve its swinging. The fastest
-   !> is that across the narrow side of the block: A D11/(rho S)
+   !> Blocks whose strain follows their load, as a step does not resolve its swinging: the fastest,
+   !> that across the narrow side of the block, goes on by more than one radian, A D11/(rho S)
    pure function strain_follows(system, dt) result(follows)
       type(block_system_t), intent(in) :: system
       real(wp), intent(in) :: dt                 !! Length of the longest step [s]
@@ -181,7 +178,7 @@ contains
          d = elasticity_matrix(system%materials(system%material(b)))
          associate (s => system%second(:, b))
             narrow = (s(1) + s(2))/2.0_wp - norm2([(s(1) - s(2))/2.0_wp, s(3)])
-            follows(b) = dt**2*system%area(b)*d(1, 1) > resolved**2*system%density(b)*narrow
+            follows(b) = dt**2*system%area(b)*d(1, 1) > system%density(b)*narrow
          end associate
       end do
    end function strain_follows

@@ -25,9 +25,6 @@ module dda_joint_answer
       logical :: sticks = .false.
    end type joint_view_t
 
-   !> Determinant of a singular joint over the product of the diagonal
-   real(wp), parameter :: singular = 1.0e-14_wp
-
 contains
 
    !> Find the forces of one joint
@@ -130,7 +127,8 @@ contains
       solved = .true.
       if (all(has)) then
          determinant = m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1)
-         if (determinant > singular*m(1, 1)*m(2, 2)) then
+         ! rounding alone may leave as much of a singular joint
+         if (determinant > 64.0_wp*epsilon(1.0_wp)*m(1, 1)*m(2, 2)) then
             force(1) = (rest(2)*m(1, 2) - rest(1)*m(2, 2))/determinant
             force(2) = (rest(1)*m(2, 1) - rest(2)*m(1, 1))/determinant
             if (force(1) >= 0.0_wp .and. force(2) >= 0.0_wp) return
