@@ -35,9 +35,8 @@ module dda_verdict
 
    !> Free fall over elastic motion in a step that proves collapse
    real(wp), parameter :: beyond_elastic = 1.0e8_wp
-   !> The same in the longest step that converges
-   real(wp), parameter :: beyond_any = 100.0_wp
-   !> Collapse displacement in current geometry over elastic motion and round-off
+   !> The same in the longest step that converges, and collapse displacement in current geometry
+   !> over elastic motion and round-off
    real(wp), parameter :: collapse_multiple = 100.0_wp
    !> The same over the farthest predicted rest
    real(wp), parameter :: beyond_rest = 10.0_wp
@@ -336,7 +335,7 @@ contains
       far_beyond_elastic = fall >= beyond_elastic*march%elastic_motion &
          & .and. (step%farthest >= march%elastic_motion .or. .not. slides(step)) &
          & .or. (step%was_cut .or. step%dt >= march%longest) &
-         & .and. fall >= beyond_any*march%elastic_motion
+         & .and. fall >= collapse_multiple*march%elastic_motion
       ! what drives the blocks must be more than what the bounds of friction are off by, and speed
       ! without work is rounding
       is_certain = step%kinetic > 2.0_wp*step%state%unsettled_work &
