@@ -8,7 +8,8 @@ module dda_step
    use dda_impact, only : foresee_event
    use dda_kinds, only : wp
    use dda_load_clock, only : has_path
-   use dda_step_context, only : in_time, most_spare_cuts, contact_note_t, run_t, step_outcome_t
+   use dda_step_context, only : in_time, most_spare_cuts, contact_note_t, run_t, shortest, &
+      & step_outcome_t
    use dda_step_at_rest, only : rest
    use dda_step_check, only : check_motion, check_speeds, retry
    use dda_step_interval, only : largest_motion
@@ -23,10 +24,9 @@ module dda_step
 
    !> Maximum number of reductions of a step
    integer, parameter :: max_retries = 40
-   !> Step over the permitted one below which a run makes no progress
+   !> Step over the permitted one below which a run makes no progress, unless displacements are
+   !> prescribed, and most of these steps
    real(wp), parameter :: hardly = 1.0e-6_wp
-   !> The same for runs with prescribed displacements
-   real(wp), parameter :: led = 1.0e-3_wp
    integer, parameter :: most_stuck = 100
 
    !> Reason why contacts find no forces where displacements are prescribed
@@ -107,7 +107,7 @@ contains
          usual = march%longest
          if (speed*usual > march%allowed_motion) usual = march%allowed_motion/speed
          march%stuck = merge(march%stuck + 1, 0, run%step%dt &
-            & < merge(led, hardly, leads(run))*usual)
+            & < merge(shortest, hardly, leads(run))*usual)
          if (march%stuck < most_stuck) return
          cause = "contacts limit the step length"
          if (leads(run)) cause = jam

@@ -10,7 +10,7 @@ module dda_step_context
    private
 
    public :: energy_t, march_t, contact_note_t, run_state_t, run_t, step_context_t, step_outcome_t
-   public :: in_time, may_shorten, most_spare_cuts, near, near_gap
+   public :: in_time, may_shorten, most_spare_cuts, near, near_gap, shortest
 
    !> Maximum number of spare cuts; each step adds one, each cut costs three
    integer, parameter :: most_spare_cuts = 1000
@@ -237,7 +237,8 @@ module dda_step_context
 
    !> Gap of a closed contact, or depth of an open one, over the size of the smaller block
    real(wp), parameter :: near = 1.0e-8_wp
-   !> Shortest step over the longest one that is reduced for residual forces or penetration
+   !> Shortest step over the longest one that is reduced for residual forces or penetration, and
+   !> over the permitted one where displacements are prescribed
    real(wp), parameter :: shortest = 1.0e-3_wp
 
 contains
