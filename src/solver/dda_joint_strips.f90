@@ -8,10 +8,15 @@
 !> Both stand as forces of two more rays beside those of the joint, in a column of their own that
 !> acts on no block. Their rates y are those at which the joint is crushed about either edge of its
 !> strip: y1*grad z1 + y2*grad z2 is the part of its opening that its rays do not see. A turn sees
-!> both by their gradients, and by the curvature (y1 + y2)/S against a change of N. They are
-!> eliminated joint by joint:
+!> both by their gradients, and by the curvature (y1 + y2)/S against a change of N. With those of
+!> the rays at either corner these are five compliances c of N1 and N2, each along its own v:
 !>
-!>    K = (1/D + curvature + sum of grad z grad z'*y/z)**-1       D: springs of the rays
+!>    K = (sum of c v v')**-1             v = (1, 0), (0, 1), grad z1, grad z2, (1, 1)
+!>      = sum of c/det w w'               w: v, turned by a right angle
+!>    det = sum over pairs of c(i) c(j) (v(i) x v(j))**2
+!>
+!> They lie many decades apart, but this form (Cauchy and Binet) has no differences of them. So the
+!> joint is five springs along the w and one of the slip, and what opens these parts into rates.
 module dda_joint_strips
    use dda_joint_graph, only : joint_graph_t, joint_kind
    use dda_joint_rays, only : sum_of_rays, joint_rays, n_side
@@ -26,6 +31,9 @@ module dda_joint_strips
    public :: strip_hurry, strip_lack, strip_power
    public :: subtract_crushing, yield_strip
 
+   !> Compliances of the normal forces of a joint: both corners, both edges, curvature
+   integer, parameter :: n_soft = 5
+
    !> A joint that crushes
    type :: joint_strip_t
       integer :: joint = 0           !! Number of the joint
@@ -35,10 +43,15 @@ module dda_joint_strips
       real(wp) :: strength = 0.0_wp  !! Strength over the whole length, in units of force
       real(wp) :: share = 0.0_wp     !! Normal force over the strength, of the last turn
       real(wp) :: bend = 0.0_wp      !! Curvature against a change of the normal force, of that
-      real(rk) :: column(3) = 0.0_rk     !! Springs of the rays against normal forces
-      real(rk) :: slack = 0.0_rk         !! Curvature, reduced by these springs
-      real(rk) :: arm(3, 2) = 0.0_rk     !! Springs with curvature times the edges
-      real(rk) :: soft(2, 2) = 0.0_rk    !! Rates of crushing by forces across the edges
+      !> Springs of a turn: what they act along, as rays, the same with more digits, which joints
+      !> that slide need, and their stiffness
+      real(wp) :: row(3, n_soft + 1) = 0.0_wp
+      real(rk) :: wide_row(3, n_soft + 1) = 0.0_rk
+      real(wp) :: stiffness(n_soft + 1) = 0.0_wp
+      !> Rates of the rays and of crushing by openings along these
+      real(wp) :: part(n_soft + 1, n_side + 2) = 0.0_wp
+      !> Such rates by N1, N2 of the rays alone, and by changes of z1 and z2
+      real(wp) :: yield(n_soft - 1, n_side + 2) = 0.0_wp
    end type joint_strip_t
 
    !> Largest share of the strength at which the interior-point method begins
@@ -265,50 +278,88 @@ contains
       opening = [y(1) - share*(y(1) + y(2)), y(2) - share*(y(1) + y(2)), 0.0_wp]
    end function crushing
 
-   !> Put a strip into the spring of its joint. The compliance is a small difference of large
-   !> stiffnesses
-   pure subroutine soften_spring(stiffness, strip, spring)
-      real(wp), intent(in) :: stiffness(:)        !! z/y of either edge: (2)
-      type(joint_strip_t), intent(inout) :: strip !! Receives what yielding needs
-      real(rk), intent(inout) :: spring(3, 3)     !! Spring of the rays in, with the strip out
-      real(rk) :: m(2, 2)
+   !> Springs of a joint with its strip, and what parts openings and forces among them
+   pure subroutine soften_spring(stiffness, strip)
+      !> Stiffness of each ray, z/y in the column of a strip: (n_side, n_joint)
+      real(wp), intent(in) :: stiffness(:, :)
+      type(joint_strip_t), intent(inout) :: strip
+      real(rk) :: lean(2)
+      real(wp) :: ray(3, n_side), soft(n_soft), v(2, n_soft), others(n_soft)
+      real(wp) :: cross(n_soft, n_soft), det, part(n_soft, n_soft), yield(n_soft, n_soft)
+      integer :: c, i
 
-      strip%column = spring(:, 1) + spring(:, 2)
-      strip%slack = strip%bend/(1.0_rk + strip%bend*(strip%column(1) + strip%column(2)))
-      spring = spring - strip%slack*spread(strip%column, 2, 3)*spread(strip%column, 1, 3)
-      strip%arm = matmul(spring, edges(strip%share))
-      m = matmul(transpose(edges(strip%share)), strip%arm)
-      m(1, 1) = m(1, 1) + stiffness(1)
-      m(2, 2) = m(2, 2) + stiffness(2)
-      strip%soft = reshape([m(2, 2), -m(2, 1), -m(1, 2), m(1, 1)], [2, 2]) &
-         & /(m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1))
-      spring = spring - matmul(strip%arm, matmul(strip%soft, transpose(strip%arm)))
+      ray = joint_rays(strip%kind, strip%friction)
+      call see_slip(ray, stiffness(:, strip%joint), soft(:2), lean, strip)
+      soft(3:) = [1.0_wp/stiffness(:2, strip%place), strip%bend]
+      v = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 1.0_wp - strip%share, -strip%share, &
+         & -strip%share, 1.0_wp - strip%share, 1.0_wp, 1.0_wp], [2, n_soft])
+      do i = 1, n_soft
+         cross(:, i) = v(1, :)*v(2, i) - v(2, :)*v(1, i)
+         strip%wide_row(:, i) = [-real(v(2, i), rk), real(v(1, i), rk), &
+            & v(1, i)*lean(2) - v(2, i)*lean(1)]
+      end do
+      strip%wide_row(:, n_soft + 1) = [0.0_rk, 0.0_rk, 1.0_rk]
+      strip%row = real(strip%wide_row, wp)
+      det = sum_of_pairs(soft, cross)
+      strip%stiffness(:n_soft) = soft/det
+      do i = 1, n_soft
+         part(:, i) = soft*cross(:, i)*(soft(i)/det)
+      end do
+      yield = matmul(cross, part)
+      do i = 1, n_soft
+         yield(:, i) = soft*yield(:, i)
+         others = soft
+         others(i) = 0.0_wp
+         yield(i, i) = soft(i)*(sum_of_pairs(others, cross)/det)
+      end do
+      do i = 1, n_side
+         c = (i + 1)/2
+         strip%part(:n_soft, i) = ray(c, i)*part(:, c)
+         strip%yield(:, i) = ray(c, i)*yield(:4, c)
+      end do
+      strip%part(:n_soft, n_side + 1:) = part(:, 3:4)
+      strip%yield(:, n_side + 1:) = yield(:4, 3:4)
    end subroutine soften_spring
 
-   !> Gradients of z1 and z2 by N1, N2, T
-   pure function edges(share) result(edge)
-      real(wp), intent(in) :: share  !! Normal force over the strength
-      real(rk) :: edge(3, 2), n
+   !> Compliance of the rays at either corner of a joint, and what they do against a slip
+   pure subroutine see_slip(ray, stiffness, soft, lean, strip)
+      real(wp), intent(in) :: ray(3, n_side)     !! The rays: N1, N2, T
+      real(wp), intent(in) :: stiffness(n_side)  !! Their stiffness
+      real(wp), intent(out) :: soft(2)           !! Compliances of N1 and N2
+      real(rk), intent(out) :: lean(2)           !! Openings that change them as a slip does
+      type(joint_strip_t), intent(inout) :: strip  !! Receives the spring and the rates of its slip
+      integer :: c
+      real(wp) :: turned
 
-      n = share
-      edge = reshape([1.0_rk - n, -n, 0.0_rk, -n, 1.0_rk - n, 0.0_rk], [3, 2])
-   end function edges
+      strip%stiffness(n_soft + 1) = 0.0_wp
+      do c = 1, 2
+         associate (p => ray(c, 2*c - 1:2*c), t => ray(3, 2*c - 1:2*c), &
+            & k => stiffness(2*c - 1:2*c), firm => strip%stiffness(n_soft + 1))
+            soft(c) = 1.0_wp/sum(p**2*k)
+            lean(c) = sum(real(p, rk)*t*k)/sum(real(p, rk)**2*k)
+            turned = p(1)*t(2) - p(2)*t(1)
+            strip%part(n_soft + 1, 2*c - 1:2*c) = [-p(2)*k(2), p(1)*k(1)]*(turned*soft(c))
+            firm = firm + k(1)*k(2)*turned**2*soft(c)
+         end associate
+      end do
+   end subroutine see_slip
+
+   !> Determinant of the sum of compliances, each along its v: a sum over their pairs
+   pure real(wp) function sum_of_pairs(soft, cross) result(det)
+      real(wp), intent(in) :: soft(n_soft)           !! Compliances
+      real(wp), intent(in) :: cross(n_soft, n_soft)  !! Cross products of their v
+
+      det = 0.5_wp*dot_product(soft, matmul(cross**2, soft))
+   end function sum_of_pairs
 
    !> Part the opening of a joint into rates of its rays and of crushing
-   pure subroutine part_opening(strip, opening, rate)
+   pure subroutine part_opening(strip, turn, rate)
       type(joint_strip_t), intent(in) :: strip
-      real(rk), intent(in) :: opening(3)    !! Opening 1, opening 2, slip
+      real(wp), intent(in) :: turn(:)       !! Openings of its springs: (n_soft + 1)
       real(wp), intent(inout) :: rate(:, :) !! Rates; those of the joint are set: (n_side, n_joint)
-      real(rk) :: y(2), left(3), edge(3, 2)
 
-      associate (j => strip%joint)
-         edge = edges(strip%share)
-         y = matmul(strip%soft, matmul(opening, strip%arm))
-         left = opening - matmul(edge, y)
-         left(1:2) = left(1:2) - strip%slack*dot_product(strip%column, left)
-         rate(:, j) = real(matmul(left, joint_rays(strip%kind, strip%friction)), wp)
-         rate(:2, strip%place) = real(y, wp)
-      end associate
+      rate(:, strip%joint) = matmul(turn, strip%part(:, :n_side))
+      rate(:2, strip%place) = matmul(turn, strip%part(:, n_side + 1:))
    end subroutine part_opening
 
    !> Yielding of a strip to forces of its joint: rates of crushing, and what these and the
@@ -319,17 +370,9 @@ contains
       real(wp), intent(in) :: aim(2)         !! Aimed change of z1 and z2 without rates
       real(wp), intent(out) :: y(2)          !! Rates of crushing
       real(wp), intent(out) :: rate(n_side)  !! Rates that are added to those of the rays
-      real(rk) :: left(3), edge(3, 2), crushed(2)
 
-      associate (j => strip%joint)
-         edge = edges(strip%share)
-         left = force - strip%column*(strip%slack*(real(force(1), rk) + force(2)))
-         crushed = matmul(strip%soft, aim - matmul(left, edge))
-         y = real(crushed, wp)
-         left = left + matmul(strip%arm, crushed)
-         left = strip%bend*(left(1) + left(2))*[1.0_rk, 1.0_rk, 0.0_rk] - matmul(edge, crushed)
-         rate = real(matmul(left, joint_rays(strip%kind, strip%friction)), wp)
-      end associate
+      rate = matmul([force(:2), aim], strip%yield(:, :n_side))
+      y = matmul([force(:2), aim], strip%yield(:, n_side + 1:))
    end subroutine yield_strip
 
 end module dda_joint_strips

@@ -9,7 +9,7 @@
 module dda_ray_matrix
    use dda_block_factor, only : block_factor_t, factorise, substitute
    use dda_block_matrix, only : block_matrix_t
-   use dda_joint_graph, only : joint_graph_t, unit_of_length
+   use dda_joint_graph, only : joint_graph_t, joint_kind, unit_of_length
    use dda_joint_matrix, only : lay_out_joints
    use dda_joint_rays, only : joint_rays, joint_spring, n_side, ray_rates, &
       & scaled_rows
@@ -39,6 +39,8 @@ module dda_ray_matrix
       real(wp), allocatable :: stiffness(:, :)
       !> Joints that crush: (n)
       type(joint_strip_t), allocatable :: strip(:)
+      !> Number of each joint among these, or 0: (n_joint)
+      integer, allocatable :: crushed(:)
       !> Factorisations so far
       integer :: n_factorisation = 0
       !> Substitutions so far
@@ -51,12 +53,15 @@ contains
    pure subroutine plan_matrix(graph, springs)
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(out) :: springs  !! The matrix, without numbers
+      integer :: i
 
       springs%length = unit_of_length(graph)
       call lay_out_joints(graph%block, 3, graph%n_block, .true., springs%matrix, springs%factor, &
          & springs%entry)
       allocate (springs%stiffness(n_side, size(graph%block, 2)))
       call list_strips(graph, springs%strip)
+      allocate (springs%crushed(size(graph%kind)), source=0)
+      springs%crushed(springs%strip%joint) = [(i, i=1, size(springs%strip))]
    end subroutine plan_matrix
 
    !> Assemble springs and masses, and factor their matrix
@@ -98,10 +103,8 @@ contains
       type(ray_matrix_t), intent(inout) :: springs
       real(rk) :: diagonal(3, 3, graph%n_block), coupling(3, 3, size(springs%matrix%pair, 2))
       real(rk) :: arm(3, 3, 2), pushed(3, 3, 2), spring(3, 3)
-      real(wp) :: force(3, n_side)
-      integer :: b, c, i, j, next, side
+      integer :: b, c, j, side
 
-      next = 1
       diagonal = 0.0_rk
       do b = 1, graph%n_block
          do c = 1, 3
@@ -110,15 +113,14 @@ contains
       end do
       do j = 1, size(graph%block, 2)
          arm = scaled_rows(graph, j, springs%length)
-         force = joint_rays(graph%kind(j), graph%friction(j))
-         spring = 0.0_rk
-         do i = 1, n_side
-            do c = 1, 3
-               spring(:, c) = spring(:, c) &
-                  & + springs%stiffness(i, j)*(real(force(:, i), rk)*force(c, i))
-            end do
-         end do
-         call soften(springs, j, next, spring)
+         if (springs%crushed(j) > 0) then
+            associate (strip => springs%strip(springs%crushed(j)))
+               spring = sum_of_springs(strip%stiffness, strip%wide_row)
+            end associate
+         else
+            spring = sum_of_springs(springs%stiffness(:, j), &
+               & real(joint_rays(graph%kind(j), graph%friction(j)), rk))
+         end if
          do side = 1, 2
             pushed(:, :, side) = matmul(arm(:, :, side), spring)
             b = graph%block(side, j)
@@ -136,23 +138,39 @@ contains
       springs%n_factorisation = springs%n_factorisation + 1
    end subroutine add_digits
 
+   !> Sum of the springs of a joint
+   pure function sum_of_springs(stiffness, ray) result(spring)
+      real(wp), intent(in) :: stiffness(:)  !! Stiffness of each
+      real(rk), intent(in) :: ray(:, :)     !! Rows of each: (3, n)
+      real(rk) :: spring(3, 3)
+      integer :: c, i
+
+      spring = 0.0_rk
+      do i = 1, size(stiffness)
+         do c = 1, 3
+            spring(:, c) = spring(:, c) + stiffness(i)*(ray(:, i)*ray(c, i))
+         end do
+      end do
+   end function sum_of_springs
+
    !> Sum of all springs
    pure subroutine assemble(graph, springs)
       type(joint_graph_t), intent(in) :: graph
       type(ray_matrix_t), intent(inout) :: springs
       real(wp) :: pushed(3, 3, 2), row(3, 3, 2), spring(3, 3)
-      real(rk) :: soft(3, 3)
-      integer :: c, j, next, side
+      integer :: c, j, side
 
-      next = 1
+      do j = 1, size(springs%strip)
+         call soften_spring(springs%stiffness, springs%strip(j))
+      end do
       springs%matrix%diagonal = 0.0_wp
       do j = 1, size(graph%block, 2)
          row = scaled_rows(graph, j, springs%length)
          spring = joint_spring(graph%kind(j), graph%friction(j), springs%stiffness(:, j))
-         if (next <= size(springs%strip)) then
-            soft = spring
-            call soften(springs, j, next, soft)
-            spring = real(soft, wp)
+         if (springs%crushed(j) > 0) then
+            associate (strip => springs%strip(springs%crushed(j)))
+               spring = matmul(strip%row*spread(strip%stiffness, 1, 3), transpose(strip%row))
+            end associate
          end if
          do side = 1, 2
             if (graph%block(side, j) == 0) cycle
@@ -175,20 +193,6 @@ contains
       end do
    end subroutine assemble
 
-   !> Let the spring of a joint that crushes yield
-   pure subroutine soften(springs, j, next, spring)
-      type(ray_matrix_t), intent(inout) :: springs
-      integer, intent(in) :: j                 !! Number of the joint
-      integer, intent(inout) :: next           !! Number of the next joint that crushes, among them
-      real(rk), intent(inout) :: spring(3, 3)  !! The spring
-
-      if (next > size(springs%strip)) return
-      if (springs%strip(next)%joint /= j) return
-      call soften_spring(springs%stiffness(:2, springs%strip(next)%place), springs%strip(next), &
-         & spring)
-      next = next + 1
-   end subroutine soften
-
    !> sum = sum + a b', the lower triangle alone, the only part used of a diagonal block
    pure subroutine add_lower(a, b, sum)
       real(wp), intent(in) :: a(3, 3)       !! First factor
@@ -210,6 +214,8 @@ contains
       real(wp), intent(out) :: motion(3, 0:graph%n_block)
       !> Rates at which it opens the rays: (n_side, n_joint)
       real(wp), intent(out), contiguous :: rate(:, :)
+      real(wp) :: opening(3), row(3, 3, 2)
+      integer :: i
 
       motion = load
       motion(:, 0) = 0.0_wp
@@ -219,7 +225,14 @@ contains
       else
          call substitute(springs%factor, motion(:, 1:))
          call ray_rates(graph, springs%length, motion, rate)
-         if (size(springs%strip) > 0) call part_openings(graph, springs, real(motion, rk), rate)
+         do i = 1, size(springs%strip)
+            associate (strip => springs%strip(i))
+               row = scaled_rows(graph, strip%joint, springs%length)
+               opening = matmul(motion(:, graph%block(1, strip%joint)), row(:, :, 1)) &
+                  & + matmul(motion(:, graph%block(2, strip%joint)), row(:, :, 2))
+               call part_opening(strip, matmul(opening, strip%row), rate)
+            end associate
+         end do
       end if
    end subroutine solve_springs
 
@@ -229,38 +242,26 @@ contains
       type(ray_matrix_t), intent(in) :: springs
       real(wp), intent(inout) :: motion(3, 0:graph%n_block)  !! Loads in, motion out
       real(wp), intent(out), contiguous :: rate(:, :)
-      real(rk) :: x(3, 0:graph%n_block), arm(3, 3, 2)
+      real(rk) :: x(3, 0:graph%n_block), arm(3, 3, 2), opening(3)
       integer :: j
 
       x = motion
       call substitute_wide(springs%factor%plan, springs%wide, x(:, 1:))
       motion = real(x, wp)
+      rate = 0.0_wp
       do j = 1, size(rate, 2)
+         if (graph%kind(j) == joint_kind%strip) exit
          arm = scaled_rows(graph, j, springs%length)
-         rate(:, j) = real(matmul(matmul(x(:, graph%block(1, j)), arm(:, :, 1)) &
-            & + matmul(x(:, graph%block(2, j)), arm(:, :, 2)), &
-            & real(joint_rays(graph%kind(j), graph%friction(j)), rk)), wp)
+         opening = matmul(x(:, graph%block(1, j)), arm(:, :, 1)) &
+            & + matmul(x(:, graph%block(2, j)), arm(:, :, 2))
+         if (springs%crushed(j) > 0) then
+            associate (strip => springs%strip(springs%crushed(j)))
+               call part_opening(strip, real(matmul(opening, strip%wide_row), wp), rate)
+            end associate
+         else
+            rate(:, j) = real(matmul(opening, &
+               & real(joint_rays(graph%kind(j), graph%friction(j)), rk)), wp)
+         end if
       end do
-      call part_openings(graph, springs, x, rate)
    end subroutine solve_wide
-
-   !> Part what opens joints that crush into rates of their rays and of crushing
-   pure subroutine part_openings(graph, springs, motion, rate)
-      type(joint_graph_t), intent(in) :: graph
-      type(ray_matrix_t), intent(in) :: springs
-      !> Motion of the blocks, none of what cannot move: (3, 0:n_block)
-      real(rk), intent(in) :: motion(3, 0:graph%n_block)
-      real(wp), intent(inout), contiguous :: rate(:, :)
-      real(rk) :: arm(3, 3, 2)
-      integer :: i
-
-      do i = 1, size(springs%strip)
-         associate (j => springs%strip(i)%joint)
-            arm = scaled_rows(graph, j, springs%length)
-            call part_opening(springs%strip(i), &
-               & matmul(motion(:, graph%block(1, j)), arm(:, :, 1)) &
-               & + matmul(motion(:, graph%block(2, j)), arm(:, :, 2)), rate)
-         end associate
-      end do
-   end subroutine part_openings
 end module dda_ray_matrix
