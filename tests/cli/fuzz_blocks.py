@@ -3,25 +3,19 @@
 
 usage: fuzz_blocks.py --dda build/bin/dda [--mutants N] [--runs N] [--seed N]
 
-Mutates good files of blocks and decks of mode dynamic and limerick, and has `dda check` read them,
-many a call. Every deck must either be accepted or give lines FILE:LINE: error: ... with lines that
-the file has; the exit status must be 0 or 2; nothing may crash or hang. Of those that are accepted
-some are computed, a few steps long: status 0 or 3. The same seed makes the same mutants. Ends with
-status 1 and keeps the files that failed.
+Mutates good files of blocks and decks of mode dynamic and limerick, and has `dda check` read them, many a call. Of
+those that are accepted some are computed, a few steps long: status 0 or 3. Rules and options are those of fuzz.py.
 """
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
-import shutil
 import sys
-import tempfile
 from pathlib import Path
 
-from fuzz_deck import ERROR, run
-from fuzz_limerick import mutate_once
+from fuzz import complaint, fuzz, mutant, parser_of, run
+from fuzz_limerick import NUMBERS
 
 BLOCKS = [
     b"""! a block on a base
@@ -89,48 +83,20 @@ file columns scale 'record.csv' time 0 -1 1e300 1e-300 nan 2147483648 9999999999
 SHORT = ["--cases", "1", "--quiet", "--set", "analysis%steps=6"]  #: Words of a run that keep it short
 
 
-def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
-    """Make a text from a good one by a change or more; sometimes it stays good."""
-    text = rng.choice(seeds)
-    for _ in range(rng.choice([0, 1, 1, 1, 2, 4])):
-        if rng.random() < 0.3:
-            places = list(re.finditer(rb"\S+", text)) or [re.search(rb"", text)]
-            place = rng.choice(places)
-            text = text[: place.start()] + rng.choice(WORDS) + text[place.end():]
-        else:
-            text = mutate_once(rng, text, seeds)
-    return text
+def write(rng: random.Random, folder: Path, numbers: range) -> list[Path]:
+    """Write files of blocks and their decks, one or both of them changed, and one record for all of them."""
+    def changed(seeds: list[bytes]) -> bytes:
+        return mutant(rng, seeds, WORDS, NUMBERS, (0, 1, 1, 1, 2, 4))
 
-
-def complaint(status: int | None, lines: list[str], folder: Path) -> str:
-    """Broken rule of a call, empty if none; a call that hangs has no status."""
-    if status not in (0, 2, 3):
-        return "hang" if status is None else f"status {status}: " + " | ".join(lines[-5:])
-    errors = 0
-    for line in lines:
-        match = ERROR.match(line)
-        if not match and ("error" in line.lower() or "NaN" in line or "Infinity" in line):
-            return f"not FILE:LINE: error: {line}"
-        if not match:
-            continue
-        errors += 1
-        path = folder / match["file"]
-        text = path.read_bytes() if path.suffix != ".restart" else b"\n"
-        ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
-        if not 1 <= int(match["line"]) <= ends + 1:
-            return f"no such line: {line}"
-    return "" if (status == 2) == (errors > 0) else f"status {status} with {errors} errors"
-
-
-def write_mutant(rng: random.Random, folder: Path, number: int) -> Path:
-    """Write a file of blocks and its deck, one or both of them changed."""
-    which = rng.randrange(3)
-    blocks = rng.choice(BLOCKS) if which == 1 else mutant(rng, BLOCKS)
-    groups = rng.choice(GROUPS) if which == 0 else mutant(rng, GROUPS)
-    (folder / f"m{number}.blocks").write_bytes(blocks)
-    deck = folder / f"m{number}.nml"
-    deck.write_bytes(f"&scene kind = 'blocks', geometry = 'm{number}.blocks' /\n".encode() + groups)
-    return deck
+    (folder / "record.csv").write_bytes(rng.choice(RECORDS) if rng.random() < 0.5 else changed(RECORDS))
+    decks = []
+    for number in numbers:
+        which = rng.randrange(3)
+        (folder / f"m{number}.blocks").write_bytes(rng.choice(BLOCKS) if which == 1 else changed(BLOCKS))
+        decks.append(folder / f"m{number}.nml")
+        head = f"&scene kind = 'blocks', geometry = 'm{number}.blocks' /\n".encode()
+        decks[-1].write_bytes(head + (rng.choice(GROUPS) if which == 0 else changed(GROUPS)))
+    return decks
 
 
 def is_small(text: bytes) -> bool:
@@ -139,12 +105,15 @@ def is_small(text: bytes) -> bool:
     return b"sweep" not in text.lower() and max(numbers, default=0.0) <= 100.0
 
 
-def compute(dda: str, deck: Path, folder: Path) -> str:
-    """Compute a deck that was accepted."""
-    status, lines = run([dda, "run", *SHORT, "--out", str(folder / "out")], [deck], 60.0)
-    broken = complaint(status, lines, folder)
+def compute(dda: str, deck: Path) -> str | None:
+    """What computing a deck breaks; empty if all is well, None if it is refused or large."""
+    if not is_small(deck.read_bytes()) or run([dda, "check"], [deck], 20.0)[0] != 0:
+        return None
+    out = deck.with_suffix(".out")
+    status, lines = run([dda, "run", *SHORT, "--out", out], [deck], 60.0)
+    broken, _ = complaint(status, lines, [deck], others=True, accepted=(0, 2, 3))
     if not broken and status in (0, 3):
-        rows = (folder / "out" / "results.csv").read_bytes()
+        rows = (out / "results.csv").read_bytes()
         if rows.count(b"\n") != 2 or b"nan" in rows.lower().split(b"\n")[1]:
             return "not one row of numbers"
     return broken
@@ -152,55 +121,10 @@ def compute(dda: str, deck: Path, folder: Path) -> str:
 
 def main() -> int:
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()), help="the program")
-    parser.add_argument("--mutants", type=int, default=20000)
-    parser.add_argument("--runs", type=int, default=2000, help="accepted decks to compute at most")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--batch", type=int, default=40, help="decks a call")
-    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
-    options = parser.parse_args()
-    rng = random.Random(options.seed)
-    failed: list[str] = []
-    accepted = computed = 0
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for start in range(0, options.mutants, options.batch):
-            numbers = range(start, min(start + options.batch, options.mutants))
-            # one record for the whole batch: an error in it is one of every deck that names it
-            (folder / "record.csv").write_bytes(rng.choice(RECORDS) if rng.random() < 0.5 else mutant(rng, RECORDS))
-            decks = [write_mutant(rng, folder, number) for number in numbers]
-            status, lines = run([options.dda, "check"], decks, 20.0)
-            together = complaint(status, lines, folder)
-            before = len(failed)
-            refused = {match["file"] for match in map(ERROR.match, lines) if match}
-            for deck in decks:
-                broken = ""
-                named = {str(deck), str(deck.with_suffix(".blocks"))}
-                texts = deck.read_bytes() + deck.with_suffix(".blocks").read_bytes()
-                if b"record.csv" in texts:
-                    named.add(str(folder / "record.csv"))
-                if together:
-                    broken = complaint(*run([options.dda, "check"], [deck], 20.0), folder)
-                elif not named & refused:
-                    accepted += 1
-                    text = deck.read_bytes()
-                    if computed < options.runs and is_small(text):
-                        computed += 1
-                        broken = compute(options.dda, deck, folder)
-                if broken:
-                    failed.append(f"{deck.name}: {broken}")
-                    Path(options.keep).mkdir(parents=True, exist_ok=True)
-                    for path in (deck, deck.with_suffix(".blocks"), folder / "record.csv"):
-                        shutil.copy(path, options.keep)
-                deck.unlink()
-                deck.with_suffix(".blocks").unlink()
-            if together and len(failed) == before:
-                failed.append(f"only together, from {decks[0].name}: {together}")
-    print("\n".join(failed))
-    print(f"{options.mutants} mutants, seed {options.seed}: {accepted} accepted, {computed} "
-          f"computed, {len(failed)} failed")
-    return 1 if failed else 0
+    options = parser_of(__doc__).parse_args()
+    return fuzz(options, 40, write,
+                lambda decks: complaint(*run([options.dda, "check"], decks, 20.0), decks, others=True),
+                lambda deck: compute(options.dda, deck))
 
 
 if __name__ == "__main__":

@@ -1,26 +1,22 @@
 #!/usr/bin/env python3
 """Seeded mutation fuzzer of the deck reader.
 
-usage: fuzz_deck.py --command 'build/bin/dda check' [--mutants N] [--seed N] [--run PROGRAM]
+usage: fuzz_deck.py --dda build/bin/dda [--mutants N] [--runs N] [--seed N]
 
-Mutates good decks and runs COMMAND on them, many decks a call. Every deck must
-either be accepted or give one line FILE:LINE: error: ...; the exit status must
-be 0 (all accepted) or 2 (some refused); nothing may crash or hang. The same
-seed makes the same mutants. With --run, the first case of each small deck that is accepted is
-computed as well: status 0 or 3, one row, no message. Ends with status 1 and keeps the decks that
-failed.
+Mutates good decks and has `dda check` read them, many decks a call. With --runs, the first case of small decks that are
+accepted is computed as well: status 0 or 3, one row, no message. Rules and options are those of fuzz.py.
 """
-import argparse
+
+from __future__ import annotations
+
 import random
 import re
-import resource
-import shlex
-import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from fuzz import complaint, fuzz, mutant, parser_of, run
 
 SEEDS = [
     b"""&scene title='Semicircle of 36 voussoirs' /
@@ -77,143 +73,8 @@ WORDS = [word.encode() for word in WORDS] + [b"\n", b"\r", b"\r\n", b"\t", b"\x0
 NUMBERS = [word for word in WORDS if re.match(rb"[-0-9ni]", word)] + [
     b"0.1", b"1.0", b"2", b"45", b"89.95", b"91", b"1.5d0", b"1e-12", b"1e30", b"0.0, 30", b"7*1"]
 
-ERROR = re.compile(r"^(?P<file>.+?):(?P<line>\d+): error: [ -~]+$")
 
-
-def cut(rng, text):
-    """Two places in a text, the first not after the second, mostly near each other."""
-    first = rng.randrange(len(text) + 1)
-    length = rng.choice([1, 1, 2, 5, 20, len(text)])
-    return first, min(len(text), first + rng.randint(0, length))
-
-
-def mutate_once(rng, text):
-    """One change of a text."""
-    first, last = cut(rng, text)
-    kind = rng.randrange(14)
-    if kind == 0:
-        return text[:first] + text[last:]
-    if kind == 1:
-        return text[:last] + text[first:]
-    if kind == 2:
-        return text[:first] + bytes([rng.randrange(256)]) + text[first + 1:]
-    if kind in (3, 4):
-        return text[:first] + rng.choice(WORDS) + text[last if kind == 4 else first:]
-    if kind == 5:
-        lines = text.split(b"\n")
-        rng.shuffle(lines)
-        return b"\n".join(lines)
-    if kind == 6:
-        other = rng.choice(SEEDS)
-        begin, end = cut(rng, other)
-        return text[:first] + other[begin:end] + text[last:]
-    if kind == 7:
-        return text[:first]
-    pattern, choices = (rb"[0-9.]+", NUMBERS) if kind < 11 else (rb"[a-z_]+ *=|'[^']*'", WORDS)
-    places = list(re.finditer(pattern, text))
-    if not places:
-        return text
-    place = rng.choice(places)
-    return text[:place.start()] + rng.choice(choices) + text[place.end():]
-
-
-def mutant(rng):
-    """A deck made from a seed by one change or more."""
-    text = rng.choice(SEEDS)
-    for _ in range(rng.choice([1, 1, 1, 2, 3, 6])):
-        text = mutate_once(rng, text)
-    return text
-
-
-def bounded(words, seconds):
-    """Run a program for so many seconds of the processor: what was done; None for a hang."""
-    limit = int(seconds) + 1
-    try:
-        done = subprocess.run(words, timeout=60 * limit, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, check=False,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit)))
-    except subprocess.TimeoutExpired:
-        return None
-    return None if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else done
-
-
-def run(command, decks, timeout):
-    """Run the command on decks: exit status (None for a hang) and lines of output."""
-    done = bounded(command + [str(deck) for deck in decks], timeout)
-    if done is None:
-        return None, []
-    return done.returncode, done.stdout.decode("utf-8", "replace").splitlines()
-
-
-def complaint(status, lines, files, others=False):
-    """Rules that the outcome of a run breaks, as text; empty if none. Also the number refused.
-
-    With `others` a message may be about another file than these.
-    """
-    if status is None:
-        return "hang", 0
-    if status not in (0, 2):
-        return f"status {status}: " + " | ".join(lines[-5:]), 0
-    refused = set()
-    names = {str(file): file for file in files}
-    for line in lines:
-        match = ERROR.match(line)
-        if not match:
-            if "error:" in line.lower() or "NaN" in line or "Infinity" in line:
-                return f"no file and line: {line}", 0
-            continue
-        if match["file"] in refused or match["file"] not in names and not others:
-            return f"not one line a file: {line}", 0
-        text = names[match["file"]].read_bytes() if match["file"] in names else b"\n" * 10**4
-        refused.add(match["file"] if match["file"] in names else line)
-        ends = text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
-        if not 1 <= int(match["line"]) <= ends + 1:
-            return f"no such line: {line}", 0
-    if (status == 2) != bool(refused):
-        return f"status {status} with {len(refused)} files refused", 0
-    return "", len(refused)
-
-
-def report(file, words, keep):
-    """Keep a file that failed, and print why."""
-    Path(keep).mkdir(parents=True, exist_ok=True)
-    shutil.copy(file, keep)
-    print(f"{file.name}: {words}", flush=True)
-
-
-def try_batch(files, attempt, keep):
-    """Numbers of files refused and failed: all are tried together, and each alone where that breaks a rule.
-
-    `attempt` is `complaint` of a run on some files.
-    """
-    trouble, refused = attempt(files)
-    if not trouble:
-        return refused, 0
-    refused = failed = 0
-    for file in files:
-        here, one = attempt([file])
-        refused += one
-        if here:
-            failed += 1
-            report(file, here, keep)
-    if not failed:
-        failed = 1
-        print(f"only together, from {files[0].name}: {trouble}", flush=True)
-    return refused, failed
-
-
-def parser_of(doc, batch):
-    """Options that fuzzers share."""
-    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mutants", type=int, default=20000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--batch", type=int, default=batch, help="files a call")
-    parser.add_argument("--timeout", type=float, default=10.0, help="seconds of the processor a call")
-    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
-    return parser
-
-
-def small(program, deck):
+def small(program: str, deck: Path) -> bool:
     """Whether the first case of a deck is computed in no time: few blocks, few steps."""
     text = deck.read_bytes().lower()
     plan = subprocess.run([program, "check", deck], stdout=subprocess.PIPE, check=False).stdout
@@ -222,49 +83,31 @@ def small(program, deck):
     return blocks is not None and int(blocks[1]) <= 60 and max(numbers, default=0) <= 1000
 
 
-def run_first_case(program, deck, timeout):
-    """What computing the first case of a good deck breaks; empty if all is well."""
+def first_case(program: str, deck: Path) -> str | None:
+    """What computing the first case of a good deck breaks; empty if all is well, None if it is refused or large."""
+    if run([program, "check"], [deck], 10.0)[0] != 0 or not small(program, deck):
+        return None
     with tempfile.TemporaryDirectory() as folder:
-        words = [program, "run", deck, "--cases", "1", "--out", folder, "--quiet"]
-        done = bounded(words, timeout)
-        if done is None:
-            return "hang of its first case"
-        if done.returncode not in (0, 3) or done.stdout:
-            return f"status {done.returncode} of its first case: {done.stdout[-300:]}"
+        status, lines = run([program, "run", "--cases", "1", "--out", folder, "--quiet"], [deck], 60.0)
+        if status not in (0, 3) or lines:
+            return "hang of its first case" if status is None else f"status {status} of its first case: {lines[-3:]}"
         rows = (Path(folder) / "results.csv").read_bytes().count(b"\n") - 1
         return "" if rows == 1 else f"{rows} rows of its first case"
 
 
-def main():
+def write(rng: random.Random, folder: Path, numbers: range) -> list[Path]:
+    """Write mutants."""
+    decks = [folder / f"mutant{number}.nml" for number in numbers]
+    for deck in decks:
+        deck.write_bytes(mutant(rng, SEEDS, WORDS, NUMBERS))
+    return decks
+
+
+def main() -> int:
     """Fuzz and report."""
-    parser = parser_of(__doc__, 50)
-    parser.add_argument("--command", required=True, help="what to run, before the names of decks")
-    parser.add_argument("--run", metavar="PROGRAM", help="dda, to compute good decks with")
-    options = parser.parse_args()
-    command = shlex.split(options.command)
-    rng = random.Random(options.seed)
-    refused = failed = computed = 0
-    with tempfile.TemporaryDirectory() as folder:
-        for start in range(0, options.mutants, options.batch):
-            decks = [Path(folder) / f"mutant{i}.nml" for i in range(start, min(start + options.batch, options.mutants))]
-            for deck in decks:
-                deck.write_bytes(mutant(rng))
-            count, broken = try_batch(
-                decks, lambda files: complaint(*run(command, files, options.timeout), files), options.keep)
-            refused, failed = refused + count, failed + broken
-            for deck in decks if options.run and not broken else ():
-                if run(command, [deck], options.timeout)[0] == 0 and small(options.run, deck):
-                    computed += 1
-                    words = run_first_case(options.run, deck, 60.0)
-                    if words:
-                        failed += 1
-                        report(deck, words, options.keep)
-            for deck in decks:
-                deck.unlink()
-    print(f"{options.mutants} mutants, seed {options.seed}: {refused} refused, "
-          f"{options.mutants - refused - failed} accepted, {failed} failed, "
-          f"{computed} computed")
-    return 1 if failed else 0
+    options = parser_of(__doc__).parse_args()
+    return fuzz(options, 50, write, lambda decks: complaint(*run([options.dda, "check"], decks, 10.0), decks),
+                lambda deck: first_case(options.dda, deck))
 
 
 if __name__ == "__main__":

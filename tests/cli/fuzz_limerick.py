@@ -5,23 +5,19 @@ usage: fuzz_limerick.py --dda build/bin/dda [--mutants N] [--seed N]
 
 Mutates good files of all four forms: geometry and analysis, plain and DDAML.
 Geometries go through `dda cut`, analyses through `dda check` with a deck that
-names them, many files a call. Every file must either be accepted or give one
-line FILE:LINE: error: ... with a line that the file has; the exit status must
-be 0 or 2; nothing may crash or take 10 seconds. The same seed makes the same
-mutants. Ends with status 1 and keeps the files that failed.
+names them, many files a call. Rules and options are those of fuzz.py.
 """
 
 from __future__ import annotations
 
 import random
-import re
 import shutil
 import sys
-import tempfile
 from pathlib import Path
 
-from fuzz_deck import complaint, cut, parser_of, run, try_batch
+from fuzz import complaint, fuzz, mutant, parser_of, run
 
+BATCH = 25  #: Files a call, all of one form
 INPUT = Path(__file__).parents[2] / "input" / "limerick"
 SMALL = """<?xml version="1.0"?>
 <d:DDA xmlns:d="u"><Geometry><Edgenodedist distance="0.01"/>
@@ -67,90 +63,31 @@ distance="&e;" <Holepointlist> numpoints="2" flag="yes" flag="" value="nan" <!DO
 WORDS += [b"\n", b"\r", b"\r\n", b"\t", b" ", b"\n\n"]
 
 
-def mutate_once(rng: random.Random, text: bytes, seeds: list[bytes]) -> bytes:
-    """Change a file once."""
-    first, last = cut(rng, text)
-    kind = rng.randrange(22)
-    if kind == 0:
-        return text[:first] + text[last:]
-    if kind == 1:
-        return text[:last] + text[first:]
-    if kind == 2:
-        return text[:first] + bytes([rng.randrange(256)]) + text[first + 1:]
-    if kind == 3:
-        return text[:first] + rng.choice(WORDS) + text[rng.choice((first, last)):]
-    if kind == 4:
-        lines = text.split(b"\n")
-        rng.shuffle(lines)
-        return b"\n".join(lines)
-    if kind == 5:
-        other = rng.choice(seeds)
-        begin, end = cut(rng, other)
-        return text[:first] + other[begin:end] + text[last:]
-    if kind == 6:
-        return text[:first]
-    if kind == 7:
-        lines = text.split(b"\n")
-        lines.insert(rng.randrange(len(lines)), rng.choice(lines))
-        return b"\n".join(lines)
-    places = list(re.finditer(rb"[-+0-9.e]*[0-9]", text))
-    if not places:
-        return text
-    place = rng.choice(places)
-    new = rng.choice(NUMBERS)
-    if kind > 12:
-        # a number near that of another place, so that lines still meet, or nearly
-        near = rng.choice((0.0, 0.0, 1e-12, -1e-9, 1e-6, 1e-3, 0.01, -0.1, 1.0))
-        try:
-            new = repr(float(rng.choice(places)[0]) + near).encode()
-        except ValueError:
-            pass
-    return text[:place.start()] + new + text[place.end():]
+def write(rng: random.Random, folder: Path, numbers: range) -> list[Path]:
+    """Write mutants of one form, and a geometry for those that are analyses."""
+    shutil.copy(INPUT / "terrace.geo", folder)
+    form = list(SEEDS)[numbers.start // BATCH % len(SEEDS)]
+    files = [folder / f"mutant{number}.{form}" for number in numbers]
+    for path in files:
+        path.write_bytes(mutant(rng, SEEDS[form], WORDS, NUMBERS, (1, 1, 2, 3, 6, 12)))
+    return files
 
 
-def mutant(rng: random.Random, seeds: list[bytes]) -> bytes:
-    """Make a file from a good one by one change or more."""
-    text = rng.choice(seeds)
-    for _ in range(rng.choice([1, 1, 2, 3, 6, 12])):
-        text = mutate_once(rng, text, seeds)
-    return text
-
-
-def try_files(dda: str, form: str, files: list[Path], timeout: float) -> tuple[str, int]:
-    """Run the program on mutants of a form of SEEDS for so many seconds a call: as `complaint`."""
-    if form.endswith(".geo"):
-        return complaint(*run([dda, "cut"], files, timeout), files, others=True)
+def try_files(dda: str, files: list[Path]) -> tuple[str, int]:
+    """Run the program on mutants of a form: as `complaint`."""
+    if files[0].suffix == ".geo":
+        return complaint(*run([dda, "cut"], files, 10.0), files, others=True)
     decks = [path.with_suffix(".nml") for path in files]
     for path, deck in zip(files, decks):
         deck.write_text(f"&scene kind='lines', geometry='terrace.geo', analysis='{path.name}' /\n")
     # a complaint of the geometry about its analysis counts for the analysis
-    return complaint(*run([dda, "check"], decks, timeout), files, others=True)
+    return complaint(*run([dda, "check"], decks, 10.0), files, others=True)
 
 
 def main() -> int:
     """Fuzz and report."""
-    parser = parser_of(__doc__, 25)
-    parser.add_argument("--dda", required=True, help="the program")
-    options = parser.parse_args()
-    rng = random.Random(options.seed)
-    refused = failed = made = 0
-    with tempfile.TemporaryDirectory() as folder:
-        shutil.copy(INPUT / "terrace.geo", folder)
-        while made < options.mutants:
-            form = list(SEEDS)[made // options.batch % len(SEEDS)]
-            files = [Path(folder) / f"mutant{made + i}.{form}"
-                     for i in range(min(options.batch, options.mutants - made))]
-            made += len(files)
-            for path in files:
-                path.write_bytes(mutant(rng, SEEDS[form]))
-            count, broken = try_batch(
-                files, lambda tried, form=form: try_files(options.dda, form, tried, options.timeout), options.keep)
-            refused, failed = refused + count, failed + broken
-            for path in files:
-                path.unlink()
-    print(f"{made} mutants, seed {options.seed}: {refused} refused, "
-          f"{made - refused - failed} accepted, {failed} failed")
-    return 1 if failed else 0
+    options = parser_of(__doc__).parse_args()
+    return fuzz(options, BATCH, write, lambda files: try_files(options.dda, files))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ keeps the files that failed, each with its deck.
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
 import shutil
@@ -24,8 +23,8 @@ import zlib
 from collections import Counter
 from pathlib import Path
 
-from fuzz_blocks import BLOCKS, RECORDS, complaint
-from fuzz_deck import run
+from fuzz import complaint, parser_of, run
+from fuzz_blocks import BLOCKS, RECORDS
 
 TITLE = b"voussoir restart 6"  #: First bytes of a restart file
 JOINT = (12, 24)  #: Whole numbers and numbers of each joint, at the end of the whole numbers and of the numbers
@@ -122,7 +121,7 @@ def deck_of(scene: tuple[str, str], steps: int, restart: str = "") -> str:
 
 def what_is_broken(folder: Path, status: int | None, lines: list[str], kind: str) -> str:
     """What a run on a file of some kind breaks; empty if nothing is."""
-    broken = complaint(status, lines, folder)
+    broken, _ = complaint(status, lines, [folder / "s.nml"], others=True, accepted=(0, 2, 3))
     if not broken and (kind == "good" and status == 2 or kind == "spoilt" and status != 2):
         return f"status {status}"
     for table in sorted((folder / "out").glob("*.csv")):
@@ -133,12 +132,7 @@ def what_is_broken(folder: Path, status: int | None, lines: list[str], kind: str
 
 def main() -> int:
     """Fuzz and report."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--dda", required=True, type=lambda name: str(Path(name).resolve()), help="the program")
-    parser.add_argument("--mutants", type=int, default=3000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep", default="fuzz_failed", help="folder for files that failed")
-    options = parser.parse_args()
+    options = parser_of(__doc__, 3000).parse_args()
     rng = random.Random(options.seed)
     failed: list[str] = []
     outcomes: Counter[tuple[str, int | None]] = Counter()
