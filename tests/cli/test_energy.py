@@ -59,27 +59,6 @@ def test_a_block_that_slides_turns_height_into_speed_and_friction(tmp_path: Path
         assert float(point[name]) == pytest.approx(value, rel=EXACT)
 
 
-def test_a_force_on_a_free_block_works_into_speed_and_damping(tmp_path: Path) -> None:
-    """A force of 1000 N at its centre against damping of 2/s: each step by the mean of the velocities at its ends."""
-    force, damping, end, step = 1000.0, 2.0, 1.0, 0.001
-    rows = energies(tmp_path, block(SQUARE) + f"load 0.5 0.5 {force} 0\n",
-                    "&material unit_weight = 1e-12 /\n" + DYNAMIC.format(step, end, f", damping = {damping}"))
-    speed = way = 0.0
-    for _ in range(round(end / step)):
-        before = speed
-        speed = (before * (1.0 - damping * step / 2.0) + force / MASS * step) / (1.0 + damping * step / 2.0)
-        way += step * (before + speed) / 2.0
-    # of the second order: the exact one is F/(m c) (1 - exp(-c t))
-    assert speed == pytest.approx(force / (MASS * damping) * (1.0 - math.exp(-damping * end)), rel=step**2)
-    last = rows[-1]
-    assert last["kinetic"] == pytest.approx(MASS * speed**2 / 2.0, rel=EXACT)
-    assert last["work"] == pytest.approx(force * way, rel=EXACT)
-    assert last["damping"] == pytest.approx(force * way - MASS * speed**2 / 2.0, rel=EXACT)
-    for name in ("gravity", "elastic", "contact", "friction", "impact", "numerical"):
-        assert abs(last[name]) < EXACT * last["kinetic"]
-    assert max(abs(total(row)) for row in rows) < 1e-10 * last["kinetic"]
-
-
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_a_bounce_takes_what_restitution_leaves_out(tmp_path: Path, restitution: float) -> None:
     """From 0.2 m above the ground: the impact takes (1 - e**2) of the fall."""
@@ -95,19 +74,6 @@ def test_a_bounce_takes_what_restitution_leaves_out(tmp_path: Path, restitution:
     for name in ("friction", "numerical", "work", "damping", "elastic"):
         assert rows[-1][name] == pytest.approx(0.0, abs=1e-9 * energy)
     assert max(abs(total(row)) for row in rows) < EXACT * energy
-
-
-def test_a_block_pulled_apart_stores_stress_times_strain_over_two(tmp_path: Path) -> None:
-    """Two forces of 1e6 N apart on 1 m2 of 5e9 Pa: sigma**2/(2 E), and as much as the first swing of it is lost."""
-    forces = "load 0 0.5 -1e6 0\nload 1 0.5 1e6 0\n"
-    deck = DYNAMIC.format(0.01, 1.0, ", damping = 5.0").replace("unknowns = 3", "unknowns = 6")
-    rows = energies(tmp_path, block(SQUARE) + forces, "&material unit_weight = 1e-12, young = 5e9 /\n" + deck)
-    stored = 1e6**2 / (2.0 * 5e9)
-    assert rows[-1]["elastic"] == pytest.approx(stored, rel=EXACT)
-    assert rows[-1]["work"] == pytest.approx(2.0 * stored, rel=EXACT)
-    assert rows[-1]["kinetic"] == pytest.approx(0.0, abs=EXACT * stored)
-    assert sum(rows[-1][name] for name in ("damping", "impact", "numerical")) == pytest.approx(stored, rel=EXACT)
-    assert max(abs(total(row)) for row in rows) < EXACT * stored
 
 
 def test_a_bar_stores_half_its_force_times_its_elongation(tmp_path: Path) -> None:
