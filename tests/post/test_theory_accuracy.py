@@ -134,25 +134,6 @@ def test_golden_values(row):
     assert np.all(errors <= ALLOWED + EPSILON / (limit - angle)), errors
 
 
-@pytest.mark.parametrize("name", THEORIES)
-def test_printed_forms_agree_where_they_are_sound(name):
-    angles = np.linspace(1.0, 2.5, 151)
-    stable, printed = theory.critical(angles, name), theory.critical_as_printed(angles, name)
-    assert all(np.max(np.abs(b / a - 1.0)) < 3e-14 for a, b in zip(stable, printed))
-
-
-@pytest.mark.parametrize(
-    "alpha, beta_error, eta_error",
-    [(1.7e-5, 1e-7, 1.0), (1e-3, 1e-11, 1e-3), (1e-2, 1e-13, 1e-10), (1e-1, 1e-15, 1e-13)],
-)
-def test_printed_forms_lose_their_digits_on_shallow_arches(alpha, beta_error, eta_error):
-    angles = alpha * np.linspace(1.0, 1.2, 21)
-    for name in ("ccr", "milankovitch"):
-        stable, printed = theory.critical(angles, name), theory.critical_as_printed(angles, name)
-        assert np.max(np.abs(printed[0] / stable[0] - 1.0)) > beta_error
-        assert np.max(np.abs(printed[1] / stable[1] - 1.0)) > eta_error
-
-
 def test_discrete_arches_are_exact():
     rows = rows_of(DATA / "arch_exact.csv")
     assert len(rows) > 300

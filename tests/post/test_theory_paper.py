@@ -4,7 +4,6 @@ import math
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
 
-import numpy as np
 import pytest
 from dda_command import rows_of
 
@@ -89,10 +88,3 @@ def test_a_wrong_digit_would_be_found():
     figure = Decimal(row["printed"])
     wrong = figure + Decimal(1).scaleb(figure.as_tuple().exponent)
     assert Decimal(exact(row)).quantize(wrong, ROUND_HALF_UP) != wrong
-
-
-def test_table_4_at_once():
-    beta, eta, h = theory.critical(np.radians([45, 90, 140]), "milankovitch")
-    assert [f"{value:.6f}" for value in beta] == ["0.532580", "0.950925", "1.029325"]
-    assert eta == pytest.approx([0.00749612, 0.107478, 0.634867], rel=1e-6)
-    assert h == pytest.approx([0.899848, 0.620881, 0.104800], rel=1e-5)
