@@ -27,7 +27,7 @@ from voussoir.plot.design_chart import ChartError, draw_chart, swept_columns  # 
 from voussoir.plot.figure_style import house_style, save  # noqa: E402
 from voussoir.plot.sheet import Sheet, renderer_of  # noqa: E402
 from voussoir.plot.sweep_chart import draw_map  # noqa: E402
-from voussoir.plot.units import axis_label, force_text, length_text, rounded  # noqa: E402
+from voussoir.plot.units import axis_label, length_text, quantity, rounded  # noqa: E402
 
 #: Three axles close to one another, two of one weight
 BRIDGE = (
@@ -276,7 +276,7 @@ def test_numbers_have_units_that_suit_them() -> None:
     assert [length_text(value) for value in (2e-9, 3.5e-6, 0.0123, 0.5, 2.0, 4200.0)] == [
         "2 nm", "3.5 µm", "12.3 mm", "500 mm", "2 m", "4.2 km"
     ]
-    assert [force_text(value) for value in (12.0, 368.46e3, 2e6)] == ["12 N/m", "368 kN/m", "2 MN/m"]
+    assert [quantity(value, "N/m") for value in (12.0, 368.46e3, 2e6)] == ["12 N/m", "368 kN/m", "2 MN/m"]
 
 
 def test_magnification_is_a_round_number() -> None:

@@ -16,7 +16,7 @@ from voussoir.plot.figure_style import INK, SMALL, type_of
 from voussoir.plot.motion import Motion
 from voussoir.plot.sheet import POINTS
 from voussoir.plot.thrust_path import thrust_pairs
-from voussoir.plot.units import force_text
+from voussoir.plot.units import quantity
 from voussoir.results import Table
 
 #: Longest force and length of slip marks in the picture, over its size
@@ -150,7 +150,7 @@ class JointMarks:
         axes.quiver(
             *self.thrust_points().T, *arrows.T, angles="xy", scale_units="xy", scale=1.0, color=INK[2],
             width=0.8 * self.pen / POINTS, units="inches", headwidth=4.5, zorder=4.5)
-        words = f"contact forces on the upper block, longest {force_text(largest, self.scene.unit)}"
+        words = f"contact forces on the upper block, longest {quantity(largest, self.scene.unit)}"
         return [entry(words, marker=r"$\uparrow$", markersize=type_of(SMALL), color=INK[2])]
 
     def draw_states(self, axes: Axes) -> list[Artist]:

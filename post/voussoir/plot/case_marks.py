@@ -15,7 +15,7 @@ from voussoir.plot.figure_style import INK, SMALL, TINY, type_of
 from voussoir.plot.motion import Motion
 from voussoir.plot.sheet import POINTS, text_size
 from voussoir.plot.source_file import Source
-from voussoir.plot.units import force_text
+from voussoir.plot.units import quantity
 
 #: Longest load in the picture, over its size; most loads that have their value beside them
 LOAD_LENGTH, MOST_VALUES = 0.12, 12
@@ -55,7 +55,7 @@ def draw_loads(axes: Axes, source: Source, size: float, motion: Motion, pen: flo
                 "mutation_scale": 10 * pen}
             axes.annotate("", tips[number], tails[number], arrowprops=arrow, zorder=8)
         if len(source.loads) <= MOST_VALUES:
-            values = [force_text(float(np.hypot(*source.loads[number][1]))) for number in chosen]
+            values = [quantity(float(np.hypot(*source.loads[number][1])), "N/m") for number in chosen]
             draw_values(axes, chosen, values, color, (tails, tips))
         if chosen:
             entries.append(entry(words, marker=r"$\downarrow$", markersize=type_of(SMALL), color=color))

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from voussoir.deck.supports import FACTOR, critical_movement, displacements, uncertainty
-from voussoir.plot.units import force_text, force_unit, name_of, value_label
+from voussoir.plot.units import force_unit, name_of, quantity, value_label
 from voussoir.results import Results
 
 Row = dict[str, Any]
@@ -95,7 +95,7 @@ def thrust_of(row: Row, unit: str) -> str:
     if math.isnan(least) and math.isnan(most):
         return ""
     if math.isnan(most):
-        return f"of at least {force_text(least, unit)}"
+        return f"of at least {quantity(least, unit)}"
     if math.isnan(least):
-        return f"of at most {force_text(most, unit)}"
-    return f"{force_text(least, unit)} to {force_text(most, unit)}"
+        return f"of at most {quantity(most, unit)}"
+    return f"{quantity(least, unit)} to {quantity(most, unit)}"

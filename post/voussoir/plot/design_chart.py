@@ -5,15 +5,24 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from voussoir.plot.figure_style import INK, MARKERS, SMALL, Picture, legend_below, type_of
 from voussoir.plot.position_chart import draw_positions
-from voussoir.plot.units import axis_label, value_label
+from voussoir.plot.units import axis_label, name_of, value_label
 from voussoir.results import Results, Table
 
+#: Words and units of columns of results that are no parameters
+COLUMNS = {
+    "thrust_min": ("least thrust", "N/m"), "thrust_max": ("greatest thrust", "N/m"),
+    "safety_thickness": ("geometric safety factor", ""), "worst_position": ("worst position", "m"),
+    "relative_error": ("relative error", ""), "sliding_share": ("share of sliding", ""),
+    "seconds": ("run time", "s"), "contact_residual": ("contact residual", "m/s"),
+    "path_time": ("pseudo-time of the path", ""), "steps": ("number of steps", ""),
+}
 #: Columns that a sweep may run over although they are not its own
 _SHARED = ("half_angle_deg", "blocks", "friction_deg", "thickness_ratio", "geometry")
 #: First and last column that every table has; swept parameters stand between
@@ -71,12 +80,12 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
         raise ChartError("expected two critical values or more, got fewer; give the deck &search")
     others = [name for name in swept if name != column and not follows(found, name, column)]
     lost = len(run.cases) - len(found)
-    missing = f"{lost} of {len(run.cases)} cases have no critical value" if lost else ""
+    missing = note_of(lost, len(run.cases), "critical")
     numbers = set(others) <= set(numeric)
     curves = _different(*(found[name] for name in others))
     if numbers and (len(others) == 2 and curves > MOST_CURVES or len(others) == 1 and curves > MOST_COLOURS):
         across, *panels = sorted(others, key=lambda name: -len(_values(found, name)))
-        return draw_field(found, column, across, panels[0] if panels else None, _searched(run), missing)
+        return draw_field(found, column, across, panels[0] if panels else None, column_label(run, "critical"), missing)
     groups = groups_of(found, others)
     if column == "position" and len(groups) == 1 and run.searched == "load_factor" and run.blocks is not None:
         return draw_positions(run, run.cases)
@@ -89,8 +98,7 @@ def draw_chart(run: Results, column: str | None = None) -> Figure:
             f"expected at most {MOST_CURVES} curves or one number beside {column}, got "
             f"{len(groups)} curves of {', '.join(others)}; sweep fewer values, or fewer keys"
         )
-    if missing:
-        figure.axes[0].set_title(missing, fontsize=type_of(SMALL), color="#555555")
+    write_note(figure.axes[0], missing)
     return figure
 
 
@@ -98,8 +106,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
     figure = Picture(figsize=(5.2, 3.9), layout="constrained")
     axes = figure.subplots()
     exact = False
-    for number, (label, rows) in enumerate(groups):
-        rows = rows.take(np.argsort(rows[column], kind="stable"))
+    for number, (label, rows) in enumerate(in_order(groups, column)):
         color = INK[number % 3]
         known = ~np.isnan(rows["exact"])
         exact |= bool(known.any())
@@ -110,7 +117,7 @@ def _draw(run: Results, groups: list[tuple[str, Table]], column: str) -> Figure:
             rows[column][known], rows["exact"][known], linestyle="none", color=color, marker="+", markersize=9,
             markeredgewidth=0.9)
     axes.set_xlabel(axis_label(column))
-    axes.set_ylabel(_searched(run))
+    axes.set_ylabel(column_label(run, "critical"))
     if exact:
         axes.plot(
             [], [], color=INK[0], linestyle="none", marker="+", markersize=9, markeredgewidth=0.9,
@@ -125,13 +132,12 @@ def _draw_by_colour(run: Results, groups: list[tuple[str, Table]], column: str, 
     axes = figure.subplots()
     values = [float(rows[other][0]) for _, rows in groups]
     scale = ScalarMappable(Normalize(min(values), max(values)), "viridis")
-    for value, (_, rows) in zip(values, groups):
-        rows = rows.take(np.argsort(rows[column], kind="stable"))
+    for value, (_, rows) in zip(values, in_order(groups, column)):
         axes.plot(
             rows[column], rows["critical"], color=scale.to_rgba(np.array(value)), linestyle="none", marker=".",
             markersize=5)
     axes.set_xlabel(axis_label(column))
-    axes.set_ylabel(_searched(run))
+    axes.set_ylabel(column_label(run, "critical"))
     figure.colorbar(scale, ax=axes, label=axis_label(other))
     return figure
 
@@ -176,10 +182,24 @@ def draw_field(found: Table, column: str, across: str, panels: str | None, searc
     return figure
 
 
-def _searched(run: Results) -> str:
-    """What was searched."""
-    name = run.searched or "thickness_ratio"
-    return "critical " + axis_label(name)
+def column_label(run: Results, column: str) -> str:
+    """Words and unit of a column."""
+    if column == "critical":
+        return "critical " + axis_label(run.searched or "thickness_ratio")
+    words, unit = COLUMNS.get(column) or name_of(column)
+    return f"{words} [{unit}]" if unit else words
+
+
+def note_of(lost: int, count: int, column: str, kinds: str = "") -> str:
+    """How many cases have no value of a column, and in parentheses which; empty where all have one."""
+    words = "critical value" if column == "critical" else f"value of {column}"
+    return f"{lost} of {count} cases have no {words}" + (f" ({kinds})" if kinds else "") if lost else ""
+
+
+def write_note(axes: Axes, words: str) -> None:
+    """Write words above the axes, if there are any."""
+    if words:
+        axes.set_title(words, fontsize=type_of(SMALL), color="#555555")
 
 
 def _values(cases: Table, name: str) -> set[Any]:
@@ -210,3 +230,8 @@ def groups_of(cases: Table, others: list[str]) -> list[tuple[str, Table]]:
         label = ", ".join(value_label(name, value) for name, value in zip(others, key))
         groups.append((label, rows))
     return groups
+
+
+def in_order(groups: list[tuple[str, Table]], column: str) -> list[tuple[str, Table]]:
+    """Groups with their rows in ascending order of a column."""
+    return [(label, rows.take(np.argsort(rows[column], kind="stable"))) for label, rows in groups]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from voussoir.plot.design_chart import ChartError, swept_columns
-from voussoir.plot.figure_style import INK, SMALL, Picture, type_of
+from voussoir.plot.design_chart import ChartError, swept_columns, write_note
+from voussoir.plot.figure_style import INK, Picture
 from voussoir.plot.units import axis_label
 from voussoir.results import Results, Table
 
@@ -93,7 +93,7 @@ def draw_fragility(run: Results, column: str | None = None) -> tuple[Figure, Log
     axes.legend(loc="best")
     notes = [f"{left} of {len(run.cases)} cases without a verdict"] if left else []
     notes += [] if fit else ["no lognormal fit: all records collapse above one value and none below"]
-    axes.set_title("; ".join(notes), fontsize=type_of(SMALL), color="#555555")
+    write_note(axes, "; ".join(notes))
     return figure, fit
 
 

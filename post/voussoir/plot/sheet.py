@@ -182,15 +182,15 @@ def make_legend(
     Its type is smaller than that of the picture, and becomes smaller still where it would be higher than the drawing.
     """
     labels = [str(entry.get_label()) for entry in entries]
+    style: dict[str, Any] = {
+        "handles": entries, "loc": "lower left", "borderpad": 0.0, "borderaxespad": 0.0, "labelspacing": 0.35,
+        "handlelength": 2.0, "handletextpad": 0.6, "columnspacing": 1.2}
     size, smallest = type_of(SMALL), type_of(0.0)
     while True:
         best = None
         for columns in range(1, min(most_columns, len(entries)) + 1):
             names = [wrapped(figure, label, width / columns - 4.6 * size, size) for label in labels]
-            legend = figure.legend(
-                handles=entries, labels=names, ncols=columns, fontsize=size, loc="lower left", borderpad=0.0,
-                borderaxespad=0.0, labelspacing=0.35, handlelength=2.0, handletextpad=0.6, columnspacing=1.2,
-                bbox_to_anchor=(0.0, 0.0))
+            legend = figure.legend(labels=names, ncols=columns, fontsize=size, bbox_to_anchor=(0.0, 0.0), **style)
             box = legend.get_window_extent(renderer_of(figure))
             found = (box.height * POINTS / figure.dpi, columns, names, box.width * POINTS / figure.dpi)
             legend.remove()
@@ -202,7 +202,4 @@ def make_legend(
             break
         size = max(smallest, 0.9 * size)
     assert best is not None
-    legend = figure.legend(
-        handles=entries, labels=best[2], ncols=best[1], fontsize=size, loc="lower left", borderpad=0.0,
-        borderaxespad=0.0, labelspacing=0.35, handlelength=2.0, handletextpad=0.6, columnspacing=1.2)
-    return legend, (best[3], best[0])
+    return figure.legend(labels=best[2], ncols=best[1], fontsize=size, **style), (best[3], best[0])

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from voussoir.deck.study import Study
-from voussoir.plot.figure_style import INK, MARKERS, SMALL, Picture, legend_below, type_of
+from voussoir.plot.design_chart import write_note
+from voussoir.plot.figure_style import INK, MARKERS, Picture, legend_below
 from voussoir.plot.units import axis_label
 
 #: Most curves, and most labels of the axis
@@ -48,9 +49,9 @@ def draw_study(study: Study, legend: bool = True) -> Figure:
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_minor_formatter(NullFormatter())
         if len(drawn) < len(study.series):
-            axes.set_title(f"{len(drawn)} of {len(study.series)} results", fontsize=type_of(SMALL), color="#555555")
+            write_note(axes, f"{len(drawn)} of {len(study.series)} results")
         if legend:
             legend_below(axes, 1 if len(drawn) < 4 else 2)
     else:
-        axes.set_title("no result differs between the runs", fontsize=type_of(SMALL), color="#555555")
+        write_note(axes, "no result differs between the runs")
     return figure

@@ -9,25 +9,18 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from voussoir.plot.design_chart import MOST_CURVES, ChartError, follows, groups_of, swept_columns
-from voussoir.plot.figure_style import INK, MARKERS, SMALL, TINY, Picture, legend_below, type_of
-from voussoir.plot.units import axis_label, name_of
+from voussoir.plot.design_chart import (
+    MOST_CURVES, ChartError, column_label, follows, groups_of, in_order, note_of, swept_columns, write_note)
+from voussoir.plot.figure_style import INK, MARKERS, TINY, Picture, legend_below, type_of
+from voussoir.plot.units import axis_label
 from voussoir.results import Results, Table
 
-#: Words and units of columns of results that are no parameters
-COLUMNS = {
-    "thrust_min": ("least thrust", "N/m"), "thrust_max": ("greatest thrust", "N/m"),
-    "safety_thickness": ("geometric safety factor", ""), "worst_position": ("worst position", "m"),
-    "relative_error": ("relative error", ""), "sliding_share": ("share of sliding", ""),
-    "seconds": ("run time", "s"), "contact_residual": ("contact residual", "m/s"),
-    "path_time": ("pseudo-time of the path", ""), "steps": ("number of steps", ""),
-}
 #: Verdicts in the order of a legend, and their colours
 VERDICTS = {
     "stable": "#bcd0e0", "found": "#bcd0e0", "completed": "#dfe7ee", "undecided": "#efe3b5", "collapsed": "#d1632a"
 }
-#: Most contours of a map, and most cells that have a mark in their middle
-MOST_CONTOURS, MOST_MARKS = 7, 400
+#: Most contours of a map
+MOST_CONTOURS = 7
 #: Length of a contour over the sides of its map from which it has its value: labels of shorter ones overlap
 LABELLED = 0.25
 #: Colours of the values of a map: viridis without its yellow, on which white contours are lost
@@ -51,8 +44,7 @@ def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool =
     figure = Picture(figsize=(5.2, 3.7), layout="constrained")
     figure.exact_size = True
     axes = figure.subplots()
-    for number, (label, rows) in enumerate(groups):
-        rows = rows.take(np.argsort(rows[x], kind="stable"))
+    for number, (label, rows) in enumerate(in_order(groups, x)):
         axes.plot(
             rows[x], values_of(rows, y), color=INK[number % 3], linewidth=0.8, marker=MARKERS[number], markersize=4.5,
             markerfacecolor="white", label=label if len(others) != 1 else plain_value(rows[others[0]][0]))
@@ -61,7 +53,7 @@ def draw_sweep(run: Results, key: str, column: str | None = None, legend: bool =
     if legend and len(groups) > 1:
         single = len(others) == 1
         legend_below(axes, min(len(groups), 4 if single else 1), title=axis_label(others[0]) if single else "")
-    note(axes, int(np.count_nonzero(np.isnan(values_of(run.cases, y)))), len(run.cases), y)
+    write_note(axes, note_of(int(np.count_nonzero(np.isnan(values_of(run.cases, y)))), len(run.cases), y))
     return figure
 
 
@@ -110,7 +102,8 @@ def draw_map(run: Results, keys: tuple[str, str], column: str | None = None, leg
     lost = np.isnan(values_of(run.cases, name))
     kinds = [f"{word} {np.count_nonzero(lost & (run.cases['verdict'] == word))}" for word in VERDICTS
              if name == "critical" and np.any(lost & (run.cases["verdict"] == word))]
-    note(axes, int(np.count_nonzero(lost)), len(run.cases), name, f"grey: {', '.join(kinds)}" if kinds else "grey")
+    words = f"grey: {', '.join(kinds)}" if kinds else "grey"
+    write_note(axes, note_of(int(np.count_nonzero(lost)), len(run.cases), name, words))
     return figure
 
 
@@ -169,19 +162,3 @@ def values_of(rows: Table, column: str) -> np.ndarray:
         values[rows["verdict"] != "found"] = np.nan
     values[~np.isfinite(values)] = np.nan
     return values
-
-
-def column_label(run: Results, column: str) -> str:
-    """Words and unit of a column."""
-    if column == "critical":
-        return "critical " + axis_label(run.searched or "thickness_ratio")
-    words, unit = COLUMNS.get(column) or name_of(column)
-    return f"{words} [{unit}]" if unit else words
-
-
-def note(axes: Axes, lost: int, count: int, column: str, kinds: str = "") -> None:
-    """Write above the axes how many cases have no value, and in parentheses which."""
-    if lost:
-        words = "critical value" if column == "critical" else f"value of {column}"
-        text = f"{lost} of {count} cases have no {words}" + (f" ({kinds})" if kinds else "")
-        axes.set_title(text, fontsize=type_of(SMALL), color="#555555")

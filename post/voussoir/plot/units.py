@@ -107,14 +107,6 @@ def force_unit(run: Results | None) -> str:
     return "N" if lune else "N/m"
 
 
-def force_text(force: float, unit: str = "N/m") -> str:
-    """A force in N/m or N with the size of unit that suits it, such as "12.5 kN/m"."""
-    for prefix, size in (("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0)):
-        if size <= force < 1e3 * size:
-            return f"{force / size:.3g} {prefix}{unit}"
-    return f"{force:.3g} {unit}"
-
-
 def digits(value: float) -> str:
     """A number of three digits, without an exponent where it has few zeros.
 
