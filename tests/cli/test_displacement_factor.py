@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from bridges import polygon, voussoirs
 from dda_command import rows_of, run_dda
-from test_live_loads import BLOCK, GROUND, rows
+from test_live_loads import rows
 
 #: Semicircle of 16 voussoirs, t/R 0.15 and R 10 m, on a support that is fixed and one that is led
 SPREADS = (
@@ -48,15 +48,6 @@ def test_decisions_agree_with_it(tmp_path: Path) -> None:
     sweep = "&sweep parameter = 'displacement_factor', values = 0, 0.4, 1.16, 1.19, 1.3 /\n"
     verdicts = [row["verdict"] for row in rows(tmp_path, MOVING + sweep, SPREADS)]
     assert verdicts == ["stable", "stable", "stable", "collapsed", "collapsed"]
-
-
-def test_a_factor_of_nothing_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "x.blocks").write_text(GROUND + BLOCK + "fix 0.5 1\n")
-    for head in ("", "&scene kind = 'blocks', geometry = 'x.blocks' /\n"):
-        (tmp_path / "x.nml").write_text(head + "&load displacement_factor = 2 /\n")
-        done = run_dda("check", "x.nml", cwd=tmp_path)
-        assert done.returncode == 2
-        assert "displacement_factor needs a prescribed displacement" in done.stderr
 
 
 def test_a_range_without_a_collapse_is_named(tmp_path: Path) -> None:

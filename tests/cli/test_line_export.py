@@ -103,14 +103,6 @@ def test_several_laws_of_joints_are_refused(tmp_path: Path) -> None:
     assert "t.nml:1: error: " in done.stderr and "joints of one law" in done.stderr
 
 
-def test_a_deck_of_blocks_needs_no_export(tmp_path: Path) -> None:
-    (tmp_path / "b.blocks").write_text("block fixed\n0 0\n1 0\n1 1\n0 1\nblock\n0 1\n1 1\n1 2\n0 2\n")
-    (tmp_path / "b.nml").write_text("&scene kind = 'blocks', geometry = 'b.blocks' /\n")
-    done = run_dda("export", "b.nml", cwd=tmp_path)
-    assert done.returncode == 2
-    assert "b.nml:1: error: dda export needs scene%kind 'arch' or 'lines', got 'blocks'" in done.stderr
-
-
 def test_what_slip_takes_comes_along(tmp_path: Path) -> None:
     exported(tmp_path, MAP + OPENING)
     worn = KEYS.replace("friction_deg = 35", "friction_deg = 35, residual_deg = 20, slip_length = 0.002")

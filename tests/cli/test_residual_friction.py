@@ -136,8 +136,6 @@ def test_a_run_goes_on_with_the_strength_that_is_left(tmp_path: Path) -> None:
 
 
 REFUSED = {
-    "arch": ("&joint residual_deg = 20 /\n", "", "joint%residual_deg needs scene%kind"),
-    "flow": ("&joint residual_deg = 20 /\n&analysis flow = 'associated' /\n", "", "joint%residual_deg needs"),
     "file and flow": ("&analysis flow = 'associated' /\n", "joint 1 1 residual_deg 20\n", "analysis%flow needs joints"),
     "limerick": ("&analysis mode = 'limerick' /\n", "joint 1 1 slip_length 1\n", "analysis%mode needs joints"),
     "too much": ("", "joint 1 1 friction_deg 30 residual_deg 40\n", "residual_deg must be at most friction_deg, 30"),
@@ -150,9 +148,8 @@ REFUSED = {
 @pytest.mark.parametrize("case", REFUSED)
 def test_what_cannot_lose_strength_is_refused(tmp_path: Path, case: str) -> None:
     deck, entry, message = REFUSED[case]
-    head = "" if case == "arch" else "&scene kind = 'blocks', geometry = 'scene.blocks' /\n"
     (tmp_path / "scene.blocks").write_text(on_slope(20.0) + entry)
-    (tmp_path / "deck.nml").write_text(head + deck)
+    (tmp_path / "deck.nml").write_text("&scene kind = 'blocks', geometry = 'scene.blocks' /\n" + deck)
     done = run_dda("check", "deck.nml", cwd=tmp_path)
     assert done.returncode == 2
     assert message in done.stderr and "error: " in done.stderr
