@@ -13,11 +13,8 @@ from voussoir.files import plain
 
 #: Columns of whole numbers, by name; every other column of numbers has floats
 _WHOLE = frozenset(
-    (
-        "case blocks voussoirs steps open_close_iterations factorisations"
-        " joint frame step block vertex point block_1 block_2"
-    ).split()
-)
+    "case blocks voussoirs steps open_close_iterations factorisations joint frame step block vertex point block_1 "
+    "block_2".split())
 #: Columns of words; what is left are numbers
 _WORDS = frozenset(
     ("deck mode geometry verdict collapses_at collapse_mode springing_hinge state state_1 state_2 mechanism"
@@ -44,16 +41,10 @@ _NEEDED = {
     "points.csv": "case step time point x y u v vx vy".split(),
     "reactions.csv": "case time block point fx fy moment".split(),
 }
-#: Columns of numbers whatever is swept
-_NUMBERS = frozenset(
-    (
-        "critical critical_low critical_high exact relative_error sliding_share x_intrados y_intrados x_extrados "
-        "y_extrados normal_force shear_force eccentricity_ratio opening_intrados opening_extrados slip x y u v vx vy "
-        "fx fy moment time x_1 y_1 x_2 y_2 force_x force_y slides_x slides_y angle_deg"
-    ).split()
-)
 #: Columns of several angles joined by semicolons
 _LISTS = frozenset(("intrados_hinge_deg", "extrados_hinge_deg"))
+#: Columns of numbers whatever is swept
+_NUMBERS = frozenset(name for names in _NEEDED.values() for name in names) - _WHOLE - _WORDS - _LISTS
 
 
 class DamagedTable(ValueError):
