@@ -36,7 +36,7 @@ module dda_step_interval
    !> Factor of a step without convergence
    real(wp), parameter :: cut = 0.3_wp
    !> Entry of a step over the size of the smallest block: each is kept, and a few add up to 1e-4
-   real(wp), parameter :: deepest = 2.0e-5_wp
+   real(wp), parameter :: deepest = 5.0e-6_wp
    !> Motion over the permitted one above which a step is rejected
    real(wp), parameter :: too_far = 2.0_wp
    !> The same on a loading path
