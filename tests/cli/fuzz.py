@@ -1,4 +1,4 @@
-"""What the fuzzers share: seeded changes of good files, runs of the program on them, and the rules that these keep.
+"""Common code of the fuzzers: seeded changes of valid files, runs of the program, and checks of its answers.
 
 Every file must either be accepted or give one line FILE:LINE: error: ... with a line that it has; the exit status must
 be 0 (all accepted) or 2 (some refused); nothing may crash or hang. The same seed makes the same mutants. A fuzzer ends

@@ -106,7 +106,7 @@ def is_small(text: bytes) -> bool:
 
 
 def compute(dda: str, deck: Path) -> str | None:
-    """What computing a deck breaks; empty if all is well, None if it is refused or large."""
+    """Run a deck; return the error found, an empty text if there is none, None if the deck is refused or large."""
     if not is_small(deck.read_bytes()) or run([dda, "check"], [deck], 20.0)[0] != 0:
         return None
     out = deck.with_suffix(".out")

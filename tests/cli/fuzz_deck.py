@@ -84,7 +84,7 @@ def small(program: str, deck: Path) -> bool:
 
 
 def first_case(program: str, deck: Path) -> str | None:
-    """What computing the first case of a good deck breaks; empty if all is well, None if it is refused or large."""
+    """Run the first case of a valid deck; return the error, an empty text if none, None if refused or large."""
     if run([program, "check"], [deck], 10.0)[0] != 0 or not small(program, deck):
         return None
     with tempfile.TemporaryDirectory() as folder:
